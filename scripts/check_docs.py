@@ -1,0 +1,130 @@
+"""Check what the documentation promises against the tool.
+
+Relative links resolve, headings that links point at exist, every command of a
+``console`` block exists with its options, and every command has a section in
+``docs/cli.md`` that names each of its options.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from des_cli.cli.main import COMMANDS, PROGRAM, program
+
+ROOT = Path(__file__).resolve().parent.parent
+CLI_PAGE = ROOT / "docs" / "cli.md"
+
+FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)[^)]*\)")
+HEADING = re.compile(r"^#+ +(.+?) *$", re.MULTILINE)
+SHELL_BREAKS = {"|", "||", "&&", ";", ">", ">>", "<", "2>"}
+
+
+def main() -> int:
+    """Print every finding as a line; the exit code tells whether there was one."""
+    pages = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
+    findings = []
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        findings += [f"{page.relative_to(ROOT)}: {what}" for what in _findings(page, text)]
+    findings += [f"{CLI_PAGE.relative_to(ROOT)}: {what}" for what in _undocumented()]
+    for finding in findings:
+        print(finding, file=sys.stderr)
+    if not findings:
+        print(f"{len(pages)} pages: links, commands and options are right")
+    return bool(findings)
+
+
+def _findings(page: Path, text: str) -> Iterator[str]:
+    for target in LINK.findall(FENCE.sub("", text)):
+        if not re.match(r"[a-z]+:", target):
+            yield from _check_link(page, target)
+    for language, block in FENCE.findall(text):
+        if language == "console":
+            for line in _command_lines(block):
+                yield from _check_command(line)
+
+
+def _check_link(page: Path, target: str) -> Iterator[str]:
+    name, _, anchor = target.partition("#")
+    linked = (page.parent / name).resolve() if name else page
+    if not linked.exists():
+        yield f"the link to {target} leads nowhere"
+    elif anchor and linked.suffix == ".md":
+        headings = HEADING.findall(FENCE.sub("", linked.read_text(encoding="utf-8")))
+        if anchor not in map(_anchor, headings):
+            yield f"the link to {target} names no heading"
+
+
+def _anchor(heading: str) -> str:
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def _command_lines(block: str) -> Iterator[list[str]]:
+    """Yield the arguments of every call of the tool after a ``$`` prompt."""
+    for line in block.replace("\\\n", " ").splitlines():
+        if not line.startswith("$ "):
+            continue
+        words = shlex.split(line[2:], comments=True)
+        while words:
+            end = next((i for i, word in enumerate(words) if word in SHELL_BREAKS), len(words))
+            if Path(words[0]).name == PROGRAM:
+                yield words[1:end]
+            words = words[end + 1 :]
+
+
+def _check_command(words: list[str]) -> Iterator[str]:
+    shown = shlex.join([PROGRAM, *words])
+    context = click.Context(program, info_name=PROGRAM)
+    known = _options(program)
+    while words and words[0] not in COMMANDS:
+        option = words.pop(0)
+        if option.partition("=")[0] not in known:
+            yield f"{shown}: {option} is neither a command nor an option of the group"
+            return
+        if option == "--color":
+            words.pop(0)
+    if not words:
+        return
+    command = program.get_command(context, words[0])
+    assert command is not None
+    known = _options(command)
+    for word in words[1:]:
+        if re.match(r"--?[a-zA-Z]", word) and word.partition("=")[0] not in known:
+            yield f"{shown}: there is no option {word}"
+
+
+def _undocumented() -> Iterator[str]:
+    """Yield what docs/cli.md does not say about a command."""
+    text = CLI_PAGE.read_text(encoding="utf-8") if CLI_PAGE.exists() else ""
+    sections = dict(re.findall(r"^## (.+?) *\n(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL))
+    context = click.Context(program, info_name=PROGRAM)
+    common = "\n".join(body for title, body in sections.items() if title not in COMMANDS)
+    for name in COMMANDS:
+        if name not in sections:
+            yield f"has no section '## {name}'"
+            continue
+        command = program.get_command(context, name)
+        assert command is not None
+        said = sections[name] + common
+        for option in sorted(_options(command)):
+            if option.startswith("--") and f"`{option}" not in said:
+                yield f"'## {name}' does not name `{option}`"
+
+
+def _options(command: click.Command) -> set[str]:
+    with click.Context(command) as context:
+        parameters = command.get_params(context)
+    return {
+        name for parameter in parameters for name in (*parameter.opts, *parameter.secondary_opts)
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())
