@@ -1,0 +1,1 @@
+"""Pure functions from joint motion to what the seat does, and back."""

@@ -1,0 +1,53 @@
+"""From a motion of the joints to everything it does at the seat."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from des_cli.kinematics.chain import Chain, chain_of, joint_axes
+from des_cli.kinematics.coriolis import coriolis
+from des_cli.kinematics.seat import (
+    in_seat_axes,
+    linear_acceleration_parts,
+    pilot_g,
+    specific_force,
+)
+from des_cli.model.machine import Machine, Seat
+from des_cli.model.motion import Motion
+from des_cli.model.response import Response
+from des_cli.units import STANDARD_GRAVITY_M_S2
+
+
+def respond(machine: Machine, seat: Seat, motion: Motion) -> Response:
+    """Evaluate the seat's response at both ends of every interval.
+
+    Parameters
+    ----------
+    machine : Machine
+    seat : Seat
+    motion : Motion
+        Its acceleration is constant over each interval and holds at both ends.
+
+    Returns
+    -------
+    Response
+        ``seat_g`` is the G-vector in the pilot's signs, the other quantities
+        are along plain axes; see ``kinematics.seat``.
+    """
+    return respond_on(chain_of(machine, seat), machine.gravity, motion)
+
+
+def respond_on(chain: Chain, gravity: float, motion: Motion) -> Response:
+    """Evaluate the response of a chain under a gravity [m/s^2]; see `respond`."""
+    angles, rates = motion.angle_sides, motion.rate_sides
+    accelerations = np.broadcast_to(motion.acceleration[:, None, :], rates.shape)
+    parts = linear_acceleration_parts(chain, angles, rates, accelerations)
+    force = specific_force(chain, angles, parts.sum(axis=-2), gravity)
+    spin = rates[..., None, :] @ joint_axes(chain, angles, "seat")
+    return Response(
+        coriolis_report=coriolis(chain, angles, rates, "report"),
+        coriolis_seat=coriolis(chain, angles, rates, "seat"),
+        seat_rate=spin[..., 0, :],
+        seat_parts=in_seat_axes(chain, angles, parts) / STANDARD_GRAVITY_M_S2,
+        seat_g=pilot_g(force),
+    )

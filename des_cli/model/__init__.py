@@ -1,0 +1,1 @@
+"""What things are: frozen dataclasses over read-only arrays, without I/O."""

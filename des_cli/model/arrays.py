@@ -1,0 +1,43 @@
+"""Arrays that nobody can change once they are part of the model."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+"""Double-precision array; the docstring at its use gives shape and unit."""
+
+Flags: TypeAlias = NDArray[np.bool_]
+"""Boolean array."""
+
+
+def read_only(values: ArrayLike, shape: tuple[int | None, ...]) -> Floats:
+    """Return a read-only double-precision copy of ``values``.
+
+    Parameters
+    ----------
+    values : array_like
+    shape : tuple of int or None
+        The expected shape; None accepts any length on that axis.
+
+    Raises
+    ------
+    ValueError
+        If the shape is another one.
+    """
+    array = np.array(values, dtype=np.float64)
+    fits = array.ndim == len(shape) and all(
+        want is None or want == have for want, have in zip(shape, array.shape, strict=True)
+    )
+    if not fits:
+        raise ValueError(f"shape {array.shape}, expected {shape}")
+    array.flags.writeable = False
+    return array
+
+
+def freeze(record: Any, name: str, shape: tuple[int | None, ...]) -> None:
+    """Replace an array field of a frozen dataclass by its read-only copy."""
+    object.__setattr__(record, name, read_only(getattr(record, name), shape))

@@ -1,0 +1,134 @@
+"""A motion of the three joints over a grid of sample times."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from des_cli.model.arrays import Flags, Floats, freeze
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Joint angles at samples, and joint rates at both ends of every interval.
+
+    Between two samples the acceleration is constant and the rate linear. A
+    rate may step at a sample, where two segments of a maneuver join: it is
+    therefore kept by interval and never smeared across the step.
+
+    Parameters
+    ----------
+    t : (n,) array
+        Sample times, strictly increasing [s].
+    angle : (n, 3) array
+        Arm, fork, cab [rad].
+    rate_start, rate_end : (n - 1, 3) array
+        Joint rates just after the first and just before the last sample of
+        each interval [rad/s].
+    """
+
+    t: Floats
+    angle: Floats
+    rate_start: Floats
+    rate_end: Floats
+
+    def __post_init__(self) -> None:
+        freeze(self, "t", (None,))
+        n = len(self.t)
+        freeze(self, "angle", (n, 3))
+        freeze(self, "rate_start", (n - 1, 3))
+        freeze(self, "rate_end", (n - 1, 3))
+
+    @cached_property
+    def step(self) -> Floats:
+        """Length of each interval, (n - 1,) [s]."""
+        return np.diff(self.t)
+
+    @cached_property
+    def rate(self) -> Floats:
+        """Rate at each sample, (n, 3) [rad/s]; the mean of both sides at a step."""
+        return mean_of_sides(np.stack([self.rate_start, self.rate_end], axis=1))
+
+    @cached_property
+    def acceleration(self) -> Floats:
+        """Acceleration of each interval, (n - 1, 3) [rad/s^2]."""
+        return (self.rate_end - self.rate_start) / self.step[:, None]
+
+    @cached_property
+    def rate_step(self) -> Floats:
+        """Jump of the rate at each interior sample, (n - 2, 3) [rad/s]."""
+        return self.rate_start[1:] - self.rate_end[:-1]
+
+    @property
+    def angle_sides(self) -> Floats:
+        """Angles at start and end of each interval, (n - 1, 2, 3) [rad]."""
+        return np.stack([self.angle[:-1], self.angle[1:]], axis=1)
+
+    @property
+    def rate_sides(self) -> Floats:
+        """Rates at start and end of each interval, (n - 1, 2, 3) [rad/s]."""
+        return np.stack([self.rate_start, self.rate_end], axis=1)
+
+
+@dataclass(frozen=True)
+class DesiredMotion:
+    """The motion that a profile asks for, and how well the joints can make it.
+
+    Parameters
+    ----------
+    motion : Motion
+    singular_value : (n,) array
+        Smallest singular value of the orientation Jacobian at each sample.
+    damped : (n,) array of bool
+        Where the inverse was damped or a rate was held at its limit.
+    residual : (n, 3) array
+        ``W - J theta'`` in seat axes [rad/s]; zero where nothing was damped.
+    attitude_error : float
+        Largest geodesic angle between the attitude that the joints make and
+        the one integrated directly from the rates [rad].
+    recorded_attitude_error : float, optional
+        Largest geodesic angle between the attitude integrated from the rates
+        and the recorded one, both relative to the first sample [rad].
+    """
+
+    motion: Motion
+    singular_value: Floats
+    damped: Flags
+    residual: Floats
+    attitude_error: float = 0.0
+    recorded_attitude_error: float | None = None
+
+
+def mean_of_sides(sides: Floats) -> Floats:
+    """Turn values at both ends of every interval into values at samples.
+
+    Parameters
+    ----------
+    sides : (n - 1, 2, ...) array
+
+    Returns
+    -------
+    (n, ...) array
+        The mean of what the two intervals at a sample say.
+    """
+    samples = np.empty((len(sides) + 1, *sides.shape[2:]))
+    samples[0], samples[-1] = sides[0, 0], sides[-1, 1]
+    samples[1:-1] = 0.5 * (sides[:-1, 1] + sides[1:, 0])
+    return samples
+
+
+def integrate_sides(step: Floats, sides: Floats) -> Floats:
+    """Integrate values at both ends of every interval by the trapezoidal rule.
+
+    Parameters
+    ----------
+    step : (n - 1,) array
+    sides : (n - 1, 2, ...) array
+
+    Returns
+    -------
+    array of shape ``sides.shape[2:]``
+    """
+    return np.tensordot(step, 0.5 * (sides[:, 0] + sides[:, 1]), axes=1)

@@ -1,0 +1,172 @@
+"""A maneuver profile: what the user asks the machine to fly, and how to reduce it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from des_cli.model.arrays import Floats, freeze
+from des_cli.model.machine import Joint, Machine, Seat
+
+Method: TypeAlias = Literal["minimum", "zero"]
+Algorithm: TypeAlias = Literal["optimum", "report-sweep"]
+Control: TypeAlias = Literal["scalar", "per-joint"]
+Axes: TypeAlias = Literal["report", "seat"]
+JacobianAt: TypeAlias = Literal["desired", "adapted"]
+LimitsPolicy: TypeAlias = Literal["enforce", "check", "warn"]
+BudgetMetric: TypeAlias = Literal[
+    "joint_deviation_relative",
+    "joint_deviation_relative_squared",
+    "mean_square_one_minus_p",
+    "seat_rate_deviation_relative",
+    "seat_g_deviation_relative",
+    "seat_g_rms_error_g",
+    "attitude_error_max_deg",
+]
+Ends: TypeAlias = Literal["free", "match-start", "match-both"]
+
+
+@dataclass(frozen=True)
+class JointCommands:
+    """Commands sampled joint by joint: a velocity for the arm, positions for the rest.
+
+    Parameters
+    ----------
+    arm_rate : (n,) array
+        [rad/s]; linear between samples, as a velocity loop is fed.
+    position : (n, 2) array
+        Fork and cab angles [rad].
+    rate_start, rate_end : (n - 1, 2) array
+        Fork and cab rates at both ends of every interval [rad/s]: exact
+        derivatives of an expression, three-point estimates of a table.
+    """
+
+    arm_rate: Floats
+    position: Floats
+    rate_start: Floats
+    rate_end: Floats
+
+    def __post_init__(self) -> None:
+        n = len(self.arm_rate)
+        freeze(self, "arm_rate", (n,))
+        freeze(self, "position", (n, 2))
+        freeze(self, "rate_start", (n - 1, 2))
+        freeze(self, "rate_end", (n - 1, 2))
+
+
+@dataclass(frozen=True)
+class BodyRates:
+    """Roll, pitch and yaw rate p, q, r of the seat, in seat axes [rad/s].
+
+    Parameters
+    ----------
+    start, middle, end : (n - 1, 3) array
+        At the start, the middle and the end of every interval: exact values of
+        an expression, interpolated ones of a table. The rates between them are
+        the parabola through the three.
+    attitude : (n, 4) array, optional
+        Recorded attitude quaternion (w, x, y, z), body to inertial, to compare
+        the integrated attitude with; NaN rows where none was recorded.
+    """
+
+    start: Floats
+    middle: Floats
+    end: Floats
+    attitude: Floats | None = None
+
+    def __post_init__(self) -> None:
+        n = len(self.start)
+        for name in ("start", "middle", "end"):
+            freeze(self, name, (n, 3))
+        if self.attitude is not None:
+            freeze(self, "attitude", (n + 1, 4))
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """How to reduce the Coriolis; the defaults are what a silent profile gets.
+
+    Parameters
+    ----------
+    r1 : (3, 3) array
+        Symmetric positive semidefinite weight on the Coriolis components
+        (AB3, BB3, CB3) in report axes or (x, y, z) in seat axes [s^4/rad^2].
+    r2 : (3,) array
+        Weight on ``(1 - u)^2`` for each joint; the scalar control takes their
+        mean, so that equal factors cost the same in both.
+    tracking : (3,) array
+        Diagonal of Q, the weight on ``(Theta - theta)^2`` [1/rad^2].
+    iterations : int
+        Backward-forward sweeps of ``report-sweep``.
+    limits : {"enforce", "check", "warn"}
+        Solve inside the machine's limits, refuse a motion beyond them, or only
+        name what is beyond them.
+    max_iterations : int
+        Newton steps in all.
+    hold : frozenset of str
+        Joints that keep their desired motion (per-joint control).
+    ends : {"free", "match-start", "match-both"}
+        Whether the adapted motion equals the desired one at its ends, in angles
+        and rates; the angles at the start always do.
+    budget : tuple of (str, float)
+        Instead of r2 and tracking: the largest value allowed of a fidelity
+        metric. At most one; empty for none.
+    tolerance : float
+        Largest Coriolis component that ``method: zero`` leaves [rad/s^2].
+    """
+
+    method: Method = "minimum"
+    algorithm: Algorithm = "optimum"
+    control: Control = "per-joint"
+    axes: Axes = "seat"
+    jacobian: JacobianAt = "desired"
+    r1: Floats = field(default_factory=lambda: 2.0 * np.eye(3))
+    r2: Floats = field(default_factory=lambda: np.ones(3))
+    tracking: Floats = field(default_factory=lambda: np.zeros(3))
+    limits: LimitsPolicy = "enforce"
+    iterations: int = 1
+    max_iterations: int = 3000
+    hold: frozenset[Joint] = frozenset()
+    ends: Ends = "free"
+    budget: tuple[tuple[str, float], ...] = (("joint_deviation_relative", 0.05),)
+    tolerance: float = 1e-4
+
+    def __post_init__(self) -> None:
+        freeze(self, "r1", (3, 3))
+        freeze(self, "r2", (3,))
+        freeze(self, "tracking", (3,))
+
+
+@dataclass(frozen=True)
+class Profile:
+    """One maneuver on one machine.
+
+    Parameters
+    ----------
+    name : str
+    t : (n,) array
+        Sample times, strictly increasing, n >= 2 [s].
+    command : JointCommands or BodyRates
+    initial_angle : (3,) array
+        Arm, fork and cab angle at the first sample [rad]; for joint commands
+        only the arm's is used.
+    machine, seat : Machine, Seat
+    reduction : Reduction
+    sha256 : str
+        Digest of the bytes that the profile was read from, with its overrides.
+    """
+
+    name: str
+    t: Floats
+    command: JointCommands | BodyRates
+    machine: Machine
+    seat: Seat = field(default_factory=Seat)
+    initial_angle: Floats = field(default_factory=lambda: np.zeros(3))
+    reduction: Reduction = field(default_factory=Reduction)
+    sha256: str = ""
+
+    def __post_init__(self) -> None:
+        freeze(self, "t", (None,))
+        freeze(self, "initial_angle", (3,))

@@ -1,0 +1,81 @@
+"""What a solver hands over: the modified motion and how it was found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from des_cli.model.arrays import Floats, freeze
+from des_cli.model.motion import Motion
+
+Status: TypeAlias = Literal[
+    "converged", "acceptable", "iteration-limit", "diverged", "infeasible", "invalid-input"
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Iteration:
+    """One line of a solver's log.
+
+    Parameters
+    ----------
+    number : int
+    cost : float
+        J at this iterate.
+    infeasibility : float
+        Largest violation of a constraint.
+    optimality : float
+        Largest violation of the first-order conditions, scaled.
+    step : float
+        Length of the line search's step, 0 to 1.
+    """
+
+    number: int
+    cost: float
+    infeasibility: float
+    optimality: float
+    step: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A solver's result; not converging is a status here, not an exception.
+
+    Parameters
+    ----------
+    status : str
+    message : str
+        One sentence for a person.
+    control : (n, m) array
+        The factor p at each sample (m = 1), or one per joint (m = 3).
+    modified : Motion
+    adjoint : (n, 3) array
+        Costate of the joint angles at each sample.
+    cost, cost_unreduced : float
+        J of this solution, and of the desired motion (p = 1).
+    optimality : float
+        Largest violation of the first-order conditions, scaled.
+    iterations : int
+    log : tuple of Iteration
+    """
+
+    status: Status
+    message: str
+    control: Floats
+    modified: Motion
+    adjoint: Floats
+    cost: float
+    cost_unreduced: float
+    optimality: float
+    iterations: int
+    log: tuple[Iteration, ...] = ()
+
+    def __post_init__(self) -> None:
+        n = len(self.modified.t)
+        freeze(self, "control", (n, None))
+        freeze(self, "adjoint", (n, 3))
+
+    @property
+    def converged(self) -> bool:
+        """Whether the solution is optimal to the solver's tolerance."""
+        return self.status == "converged"
