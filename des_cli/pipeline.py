@@ -1,0 +1,153 @@
+"""The sequence for one profile: desired motion, problem, solution, check, metrics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from des_cli.errors import Problem as Finding
+from des_cli.errors import UsageError
+from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.response import respond
+from des_cli.metrics import Measured, measure
+from des_cli.model.motion import DesiredMotion
+from des_cli.model.profile import Profile, Reduction
+from des_cli.model.run import Run
+from des_cli.model.solution import Iteration
+from des_cli.reduction.baseline import compare
+from des_cli.reduction.limits import find_violations
+from des_cli.reduction.problem import pose_problem
+from des_cli.reduction.solve import make_executable, not_attempted, solve
+from des_cli.reduction.verify import verify
+
+BOUGHT = 0.05
+"""Relative growth of a Coriolis component's energy that is worth a sentence."""
+
+NOTICEABLE = 1e-3
+"""Change of a desired angle [rad] by the limits that is worth a sentence."""
+
+
+def reduce_profile(
+    profile: Profile, *, on_iteration: Callable[[Iteration], None] | None = None
+) -> Run:
+    """Reduce the Coriolis of one maneuver.
+
+    Parameters
+    ----------
+    profile : Profile
+    on_iteration : callable, optional
+        Called with each line of the solver's log.
+
+    Returns
+    -------
+    Run
+        Also where the solver did not converge or a check failed:
+        ``run.require_release()`` raises what stands against using it.
+
+    Raises
+    ------
+    UsageError
+        If the reduction asks for things that exclude each other.
+    """
+    wanted = profile.reduction
+    require_consistent(wanted)
+    asked = make_desired(profile)
+    desired, trouble = asked.motion, ""
+    if wanted.limits == "enforce":
+        desired, trouble = make_executable(profile.machine, asked.motion)
+    problem = posed = pose_problem(profile, desired)
+    if trouble:
+        solution = not_attempted(problem, trouble)
+    else:
+        posed, solution = solve(problem, wanted, on_iteration)
+    before = respond(profile.machine, profile.seat, desired)
+    after = respond(profile.machine, profile.seat, solution.modified)
+    violations = find_violations(profile.machine, asked.motion, "desired") + find_violations(
+        profile.machine, solution.modified, "modified"
+    )
+    measured = Measured(
+        profile, asked, desired, solution, before, after, violations, compare(problem, solution)
+    )
+    metrics = measure(measured)
+    return Run(
+        profile=profile,
+        asked=asked,
+        desired=desired,
+        solution=solution,
+        before=before,
+        after=after,
+        checks=verify(posed, solution, wanted),
+        violations=violations,
+        metrics=metrics,
+        notices=tuple(_notices(asked, metrics)),
+    )
+
+
+def require_consistent(wanted: Reduction) -> None:
+    """Refuse what a method cannot do.
+
+    Raises
+    ------
+    UsageError
+        With everything that excludes something else.
+    """
+    sweep = wanted.algorithm == "report-sweep"
+    findings = [
+        what
+        for wrong, what in (
+            (
+                sweep and wanted.limits == "enforce",
+                "report-sweep cannot enforce limits: add --limits warn (or check)",
+            ),
+            (sweep and wanted.method == "zero", "report-sweep has no method zero"),
+            (
+                sweep and bool(wanted.budget),
+                "report-sweep needs the weight r2 and cannot keep a budget: add --r2",
+            ),
+            (
+                sweep and wanted.jacobian == "adapted",
+                "report-sweep takes the Jacobian on the desired motion: add --jacobian desired",
+            ),
+            (
+                bool(wanted.hold) and wanted.control == "scalar",
+                "hold needs control: per-joint, a scalar factor moves every joint",
+            ),
+            (len(wanted.hold) == 3, "hold leaves no joint to change"),
+            (not np.any(wanted.r1), "r1 weighs no Coriolis component"),
+        )
+        if wrong
+    ]
+    if findings:
+        raise UsageError([Finding("reduction", what) for what in findings])
+
+
+def _notices(asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
+    """Return what the user should know beside the numbers."""
+    notices = []
+    if np.any(asked.damped):
+        times = asked.motion.t[asked.damped]
+        largest = float(np.max(np.linalg.norm(asked.residual, axis=1)))
+        notices.append(
+            f"the inverse was damped or a joint rate held at its limit at {len(times)} samples "
+            f"between t = {times[0]:g} and {times[-1]:g} s; "
+            f"the seat rate is off by up to {largest:.3g} rad/s there"
+        )
+    change = metrics["executable"]["joint_change_max_rad"]
+    moved = [f"{joint} {value:.3g} rad" for joint, value in change.items() if value > NOTICEABLE]
+    if moved:
+        notices.append(
+            "the desired motion breaks limits; it was replaced by the nearest one inside them, "
+            f"changed by up to {', '.join(moved)}"
+        )
+    grown = [
+        f"{name} grew by {-100 * part['reduction']:.0f} %"
+        for name, part in metrics["coriolis"].items()
+        if part["reduction"] is not None and part["reduction"] < -BOUGHT
+    ]
+    if grown and metrics["solver"]["status"] in ("converged", "acceptable"):
+        notices.append(f"one component was bought with another: {', '.join(grown)}")
+    if metrics["solver"]["status"] == "acceptable":
+        notices.append(f"acceptable, not converged: {metrics['solver']['message']}")
+    return notices

@@ -1,0 +1,178 @@
+"""The most Coriolis reduction for a budget, instead of weights that must be guessed.
+
+Minimise 1/2 int c' R1 c over the factors, inside the limits, with one measure of
+fidelity at most its budget. The measure is paid for at a price; the price at which
+exactly the budget is spent is found by a bracketing search. For the joint deviation
+the price is a tracking weight Q that nobody had to know.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from des_cli.model.arrays import Floats
+from des_cli.model.solution import Solution
+from des_cli.reduction.interior import Outcome
+from des_cli.reduction.measures import ATTITUDE, MEASURES, AttitudeRows
+from des_cli.reduction.optimum import FAR, NEAR, best_of, make_solution
+from des_cli.reduction.problem import Problem
+from des_cli.reduction.search import COARSE, TOLERANCE, Search
+from des_cli.reduction.transcription import Measure, Transcription
+
+REGULARISATION = 2e-3
+"""Weight on (1 - u)^2 beside a budget, relative to the mean of the desired motion's
+c' R1 c: enough that the factors are determined everywhere, and no more."""
+
+TARGET = 0.999
+"""Share of the squared budget that the search aims at."""
+
+SPENT = 0.997
+"""Share of the squared budget that counts as spent."""
+
+MOST_PRICES = 20
+WIDEST_STEP = 30.0  # factor between two prices while nothing brackets the right one
+FREE = 1e-7  # price, relative to the unreduced cost, at which a budget is no constraint
+WARM = 1e-2  # first barrier from a solution at another price, relative
+CLOSE = 1e-3  # relative width of a bracket in which the measure jumps
+
+
+@dataclass(frozen=True)
+class _Priced:
+    """A solution at one price."""
+
+    price: float
+    spent: float  # the measure's value; the budget is one
+    outcome: Outcome
+
+
+def spend_budget(problem: Problem, metric: str, budget: float, search: Search) -> Solution:
+    """Find the most reduction that a budget buys.
+
+    Parameters
+    ----------
+    problem : Problem
+        As ``pose_budget`` makes it.
+    metric : str
+        A key of ``MEASURES``, or ``attitude_error_max_deg``.
+    budget : float
+        The largest value of the metric.
+    search : Search
+
+    Returns
+    -------
+    Solution
+        Its cost is J without the price of the measure.
+    """
+    grid = Transcription(problem)
+    if metric == ATTITUDE:
+        grid.rows.append(AttitudeRows(grid, float(np.radians(budget))))
+        best = best_of(
+            [search.minimise(grid, grid.desired, TOLERANCE, barrier) for barrier in (FAR, 0.1)]
+        )
+        return make_solution(grid, best, search, 2)
+    measure = MEASURES[metric](grid, budget, problem.gravity)
+    found = _search_price(grid, measure, search)
+    found = _better_start(grid, measure, found, search)
+    grid.priced = [(found.price, measure)]
+    solution = make_solution(grid, found.outcome, search, 1)
+    grid.priced = []
+    share = float(np.sqrt(found.spent))
+    return replace(
+        solution,
+        cost=grid.cost(found.outcome.x),
+        cost_unreduced=grid.cost(grid.desired),
+        message=f"{solution.message}; {share:.2%} of the budget on {metric} is spent",
+    )
+
+
+def pose_budget(problem: Problem) -> Problem:
+    """Return the problem with a small regularising r2 instead of r2 and tracking."""
+    m = problem.controls
+    bare = replace(problem, r2=np.zeros(m), tracking=np.zeros(3))
+    grid = Transcription(bare)
+    mean = 2.0 * grid.cost(grid.desired) / grid.weight.sum()
+    return replace(bare, r2=np.full(m, max(REGULARISATION * mean, 1e-9) / m))
+
+
+def _search_price(grid: Transcription, measure: Measure, search: Search) -> _Priced:
+    """Return the solution at the price at which the budget is spent, from inside it."""
+    unit = max(grid.cost(grid.desired), 1e-12)
+    tries = [_at_price(grid, measure, unit, grid.desired, FAR, COARSE, search)]
+    while len(tries) < MOST_PRICES and search.left:
+        inside = min((t for t in tries if t.spent <= 1.0), key=lambda t: t.price, default=None)
+        outside = max((t for t in tries if t.spent > 1.0), key=lambda t: t.price, default=None)
+        if inside and (inside.spent >= SPENT or inside.price <= FREE * unit):
+            break
+        if inside and outside and inside.price < outside.price * (1.0 + CLOSE):
+            break
+        price = _next_price(tries, inside, outside)
+        # from the motion that spends most inside the budget: on one branch of local
+        # minima what is spent follows the price without jumps
+        x = max(allowed, key=lambda t: t.spent).outcome.x if (
+            allowed := [t for t in tries if t.spent <= 1.0]
+        ) else tries[-1].outcome.x
+        tries.append(_at_price(grid, measure, price, x, WARM, COARSE, search))
+    allowed = [t for t in tries if t.spent <= 1.0] or tries
+    return _polish(grid, measure, max(allowed, key=lambda t: t.spent), search)
+
+
+def _next_price(tries: list[_Priced], inside: _Priced | None, outside: _Priced | None) -> float:
+    """Return the next price: a secant in the logarithms, kept inside the bracket if there is one."""
+    last = tries[-1]
+    slope = -1.25  # of log spent over log price, until two prices tell
+    if len(tries) > 1 and tries[-2].price != last.price:
+        before = tries[-2]
+        seen = np.log(max(last.spent, 1e-12) / max(before.spent, 1e-12))
+        slope = min(-0.1, float(seen / np.log(last.price / before.price)))
+    step = np.log(TARGET / max(last.spent, 1e-12)) / slope
+    price = last.price * float(np.exp(np.clip(step, -np.log(WIDEST_STEP), np.log(WIDEST_STEP))))
+    if inside is None or outside is None:
+        return price
+    low, high = sorted((inside.price, outside.price))
+    width = high / low
+    return float(np.clip(price, low * width**0.05, high / width**0.05))
+
+
+def _at_price(
+    grid: Transcription,
+    measure: Measure,
+    price: float,
+    x: Floats,
+    barrier: float,
+    tolerance: float,
+    search: Search,
+) -> _Priced:
+    grid.priced = [(price, measure)]
+    outcome = search.minimise(grid, x, tolerance, barrier)
+    return _Priced(price, measure.value(outcome.x), outcome)
+
+
+def _polish(
+    grid: Transcription, measure: Measure, found: _Priced, search: Search
+) -> _Priced:
+    """Solve to the full tolerance; raise the price a little if that overspends."""
+    price, x, barrier = found.price, found.outcome.x, NEAR
+    for _ in range(6):
+        fine = _at_price(grid, measure, price, x, barrier, TOLERANCE, search)
+        if fine.spent <= 1.0 or search.left == 0:
+            return fine
+        price *= 1.0 + max(1e-4, 2.0 * (fine.spent - 1.0))
+        x = fine.outcome.x
+    return fine
+
+
+def _better_start(
+    grid: Transcription, measure: Measure, found: _Priced, search: Search
+) -> _Priced:
+    """Try the same price from other starts; keep what is better and inside the budget."""
+    grid.priced = [(found.price, measure)]
+    starts = [(grid.desired, 0.1), (grid.desired, 1e-2)]
+    for x, barrier in starts:
+        outcome = search.minimise(grid, x, TOLERANCE, barrier)
+        spent = measure.value(outcome.x)
+        usable = outcome.status == "converged" and spent <= 1.0
+        if usable and outcome.cost < found.outcome.cost - 1e-9 * abs(found.outcome.cost):
+            found = _Priced(found.price, spent, outcome)
+    return found

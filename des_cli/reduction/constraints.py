@@ -1,0 +1,165 @@
+"""Inequalities on an iterate that are local in time.
+
+Every inequality is scaled so that its bounds are -1 and 1; the method in
+``interior`` treats them all alike. The machine's limits hold between samples
+too: with the acceleration constant over each interval, bounds on the rates at
+the samples and on their change over the intervals are bounds everywhere, and an
+angle's bound is drawn in by the most that its parabola can bulge.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import Machine
+from des_cli.reduction.points import Indices
+from des_cli.reduction.rates import Rates
+
+MARGIN = 1e-9
+"""Relative distance that the solver keeps from a machine limit, against rounding."""
+
+
+class Rows(ABC):
+    """Many inequalities ``-1 <= value(x) <= 1``, each local in time.
+
+    Parameters
+    ----------
+    node : (q,) int array
+        The sample k that each group of inequalities belongs to; it may also
+        depend on sample k + 1.
+    """
+
+    def __init__(self, node: Indices) -> None:
+        self.node = node
+
+    @abstractmethod
+    def value(self, x: Floats) -> Floats:
+        """Return the values, (q, r)."""
+
+    @abstractmethod
+    def jacobian(self, x: Floats) -> tuple[Floats, Floats | None]:
+        """Return d value / d x_k and, or None, d value / d x_{k+1}; (q, r, 3 + m)."""
+
+    def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
+        """Return multiplier' d2 value / dx dx, blocks (k, k), (n, 3 + m, 3 + m), or None."""
+        return None
+
+
+class AngleRows(Rows):
+    """Angles inside their limits.
+
+    Parameters
+    ----------
+    machine : Machine
+    step : (n - 1,) array
+        [s]
+    unknowns : int
+        3 + m.
+    """
+
+    def __init__(self, machine: Machine, step: Floats, unknowns: int) -> None:
+        super().__init__(np.arange(len(step) + 1))
+        angle = np.array([limit.angle for limit in machine.limits])
+        bulge = np.array([limit.acceleration for limit in machine.limits]) * step.max() ** 2 / 8.0
+        bounded = np.flatnonzero(np.isfinite(angle))
+        self._jacobian = np.zeros((len(self.node), len(bounded), unknowns))
+        room = (angle * (1.0 - MARGIN) - bulge)[bounded]
+        self._jacobian[:, np.arange(len(bounded)), bounded] = 1.0 / room
+
+    def value(self, x: Floats) -> Floats:
+        """Return the angles over their limits."""
+        return np.asarray((self._jacobian @ x[:, :, None])[:, :, 0])
+
+    def jacobian(self, x: Floats) -> tuple[Floats, None]:
+        """Return the constant coefficients."""
+        return self._jacobian, None
+
+
+class RateRows(Rows):
+    """Joint rates inside their limits, at samples.
+
+    Parameters
+    ----------
+    machine : Machine
+    rates : Rates
+        With one point at each sample.
+    step : (n - 1,) array
+        [s]
+    """
+
+    def __init__(self, machine: Machine, rates: Rates, step: Floats) -> None:
+        super().__init__(np.arange(len(step) + 1))
+        self.rates = rates
+        self.per_rate = 1.0 / (np.array([limit.rate for limit in machine.limits]) * (1.0 - MARGIN))
+
+    def value(self, x: Floats) -> Floats:
+        """Return the rates over their limits."""
+        return self.rates.value(x) * self.per_rate
+
+    def jacobian(self, x: Floats) -> tuple[Floats, None]:
+        """Return the derivative in x_k."""
+        return self.rates.expand(x)[1] * self.per_rate[:, None], None
+
+    def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
+        """Return the rates' curvature along the multipliers."""
+        return self.rates.bend(x, multiplier * self.per_rate)
+
+
+class AccelerationRows(Rows):
+    """Joint accelerations inside their limits, over intervals.
+
+    Parameters
+    ----------
+    machine : Machine
+    rates : Rates
+        With one point at each sample.
+    step : (n - 1,) array
+        [s]
+    """
+
+    def __init__(self, machine: Machine, rates: Rates, step: Floats) -> None:
+        super().__init__(np.arange(len(step)))
+        self.rates = rates
+        limit = np.array([limit.acceleration for limit in machine.limits]) * (1.0 - MARGIN)
+        self.per_change = 1.0 / (limit * step[:, None])
+
+    def value(self, x: Floats) -> Floats:
+        """Return the accelerations over their limits."""
+        return np.diff(self.rates.value(x), axis=0) * self.per_change
+
+    def jacobian(self, x: Floats) -> tuple[Floats, Floats]:
+        """Return the derivatives in x_k and x_{k+1}."""
+        slope = self.rates.expand(x)[1]
+        each = self.per_change[:, :, None]
+        return -slope[:-1] * each, slope[1:] * each
+
+    def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
+        """Return the curvature of both ends' rates along the multipliers."""
+        push = multiplier * self.per_change
+        pull = np.zeros((len(x), 3))
+        pull[1:] += push
+        pull[:-1] -= push
+        return self.rates.bend(x, pull)
+
+
+def limit_rows(machine: Machine, rates: Rates, step: Floats, unknowns: int) -> tuple[Rows, ...]:
+    """Return the machine's limits on rates, accelerations and angles.
+
+    Parameters
+    ----------
+    machine : Machine
+    rates : Rates
+        Of a motion without rate steps: one point at each sample.
+    step : (n - 1,) array
+        [s]
+    unknowns : int
+        3 + m.
+    """
+    return (
+        RateRows(machine, rates, step),
+        AccelerationRows(machine, rates, step),
+        AngleRows(machine, step, unknowns),
+    )

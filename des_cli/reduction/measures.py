@@ -1,0 +1,287 @@
+"""Measures of fidelity that a budget can be set on, with their derivatives.
+
+Each is the square of a metric over the square of its budget, so that the budget
+is one and the square is smooth where the metric itself has a kink.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from des_cli.kinematics.chain import Chain
+from des_cli.model.arrays import Floats
+from des_cli.reduction.constraints import Rows
+from des_cli.reduction.transcription import Expansion, Measure, Transcription
+from des_cli.units import STANDARD_GRAVITY_M_S2
+
+
+class JointDeviation:
+    """||theta - Theta|| / ||Theta||, squared.
+
+    Parameters
+    ----------
+    grid : Transcription
+    budget : float
+    """
+
+    def __init__(self, grid: Transcription, budget: float) -> None:
+        self.wanted = grid.problem.desired.angle
+        size = float(grid.weight @ np.sum(self.wanted**2, axis=1))
+        self.weight = grid.weight / (budget**2 * max(size, 1e-300))
+
+    def value(self, x: Floats) -> float:
+        """Return the value of an iterate."""
+        return float(self.weight @ np.sum((x[:, :3] - self.wanted) ** 2, axis=1))
+
+    def expand(self, x: Floats) -> Expansion:
+        """Expand the value; it is quadratic."""
+        n, width = x.shape
+        gradient, hessian = np.zeros((n, width)), np.zeros((n, width, width))
+        gradient[:, :3] = 2.0 * self.weight[:, None] * (x[:, :3] - self.wanted)
+        hessian[:, :3, :3] = 2.0 * self.weight[:, None, None] * np.eye(3)
+        return Expansion(self.value(x), gradient, hessian)
+
+
+class FactorDeviation:
+    """Mean of (1 - u)^2, over its budget (the metric is a square already)."""
+
+    def __init__(self, grid: Transcription, budget: float) -> None:
+        self.weight = grid.weight / (budget * grid.weight.sum() * grid.m)
+
+    def value(self, x: Floats) -> float:
+        """Return the value of an iterate."""
+        return float(self.weight @ np.sum((1.0 - x[:, 3:]) ** 2, axis=1))
+
+    def expand(self, x: Floats) -> Expansion:
+        """Expand the value; it is quadratic."""
+        n, width = x.shape
+        gradient, hessian = np.zeros((n, width)), np.zeros((n, width, width))
+        gradient[:, 3:] = 2.0 * self.weight[:, None] * (x[:, 3:] - 1.0)
+        hessian[:, 3:, 3:] = 2.0 * self.weight[:, None, None] * np.eye(width - 3)
+        return Expansion(self.value(x), gradient, hessian)
+
+
+class SeatRateDeviation:
+    """||W - W_desired|| / ||W_desired|| in seat axes, squared.
+
+    Parameters
+    ----------
+    grid : Transcription
+    budget : float
+    """
+
+    def __init__(self, grid: Transcription, budget: float) -> None:
+        self.grid = grid
+        axes = grid.problem.chain.seat_axes
+        self.axes, self.turn, self.bend = axes, axes.gradient(), axes.gradient().gradient()
+        self.wanted = self._spin(grid.desired)
+        size = float(grid.points.weight @ np.sum(self.wanted**2, axis=1))
+        self.weight = grid.points.weight / (budget**2 * max(size, 1e-300))
+
+    def _spin(self, x: Floats) -> Floats:
+        here = self.grid.points.gather(x)
+        rate = self.grid.rates.value(here)
+        return np.asarray((rate[:, None, :] @ self.axes(here[:, :3]))[:, 0])
+
+    def value(self, x: Floats) -> float:
+        """Return the value of an iterate."""
+        return float(self.weight @ np.sum((self._spin(x) - self.wanted) ** 2, axis=1))
+
+    def expand(self, x: Floats) -> Expansion:
+        """Expand the value with its exact Hessian."""
+        grid, here = self.grid, self.grid.points.gather(x)
+        rate, slope = grid.rates.expand(here)
+        axes, turn, bend = (form(here[:, :3]) for form in (self.axes, self.turn, self.bend))
+        jacobian = np.swapaxes(axes, 1, 2) @ slope
+        jacobian[:, :, :3] += np.swapaxes((rate[:, None, None, :] @ turn)[:, :, 0], 1, 2)
+        off = self._spin(x) - self.wanted
+        bent = np.zeros((len(here), here.shape[1], here.shape[1]))
+        cross = (turn @ off[:, None, :, None])[..., 0] @ slope  # (q, angle, 3 + m)
+        bent[:, :3, :] += cross
+        bent[:, :, :3] += np.swapaxes(cross, 1, 2)
+        bent[:, :3, :3] += np.einsum("kabjc,kj,kc->kab", bend, rate, off, optimize=True)
+        through_rates = grid.rates.bend(here, (axes @ off[:, :, None])[:, :, 0])
+        if through_rates is not None:
+            bent += through_rates
+        scale = 2.0 * self.weight
+        return Expansion(
+            float(self.weight @ np.sum(off**2, axis=1)),
+            grid.points.scatter(scale[:, None] * (off[:, None, :] @ jacobian)[:, 0], grid.n),
+            grid.points.scatter(
+                scale[:, None, None] * (np.swapaxes(jacobian, 1, 2) @ jacobian), grid.n
+            ),
+            bend=grid.points.scatter(scale[:, None, None] * bent, grid.n),
+        )
+
+
+class SeatGDeviation:
+    """||G - G_desired||, squared, over a size times the budget squared.
+
+    Parameters
+    ----------
+    grid : Transcription
+    budget : float
+        [g] for the root mean square, or relative to ||G_desired||.
+    gravity : float
+        [m/s^2]
+    relative : bool
+    """
+
+    def __init__(
+        self, grid: Transcription, budget: float, gravity: float, *, relative: bool
+    ) -> None:
+        self.grid = grid
+        chain: Chain = grid.problem.chain
+        self.up = gravity * np.array([0.0, 0.0, 1.0])
+        self.frame = chain.transform
+        self.frame_turn = self.frame.gradient()
+        self.reach, self.curl = chain.position_gradient, chain.position_hessian
+        self.twist = self.curl.gradient()
+        step = grid.problem.desired.step
+        self.half = 0.5 * step
+        self.wanted = self._sides(grid.desired)
+        size = step.sum()
+        if relative:
+            size = float(self.half @ np.sum(self.wanted**2, axis=(1, 2)))
+        self.weight = self.half / (budget**2 * max(size, 1e-300))
+
+    def _force(self, angle: Floats, rate: Floats, acceleration: Floats) -> Floats:
+        """Return the specific force in seat axes [g]."""
+        products = rate[:, :, None] * rate[:, None, :]
+        pull = np.einsum("kjc,kj->kc", self.reach(angle), acceleration)
+        pull += np.einsum("kijc,kij->kc", self.curl(angle), products) + self.up
+        frame = self.frame(angle)[:, :3, :3]
+        return np.einsum("kcs,kc->ks", frame, pull) / STANDARD_GRAVITY_M_S2
+
+    def _sides(self, x: Floats) -> Floats:
+        """Return the force at start and end of each interval, (n - 1, 2, 3)."""
+        points = self.grid.points
+        rate = self.grid.rates.value(points.gather(x))
+        start, end = rate[points.start], rate[points.end]
+        acceleration = (end - start) / (2.0 * self.half[:, None])
+        return np.stack(
+            [
+                self._force(x[:-1, :3], start, acceleration),
+                self._force(x[1:, :3], end, acceleration),
+            ],
+            axis=1,
+        )
+
+    def value(self, x: Floats) -> float:
+        """Return the value of an iterate."""
+        return float(self.weight @ np.sum((self._sides(x) - self.wanted) ** 2, axis=(1, 2)))
+
+    def expand(self, x: Floats) -> Expansion:
+        """Expand the value; the Hessian is that of Gauss and Newton."""
+        points, n = self.grid.points, self.grid.n
+        rate, slope = self.grid.rates.expand(points.gather(x))
+        ends = (rate[points.start], rate[points.end])
+        slopes = (slope[points.start], slope[points.end])
+        per_step = 1.0 / (2.0 * self.half)
+        acceleration = (ends[1] - ends[0]) * per_step[:, None]
+        off = self._sides(x) - self.wanted
+        width = x.shape[1]
+        gradient, hessian = np.zeros((n, width)), np.zeros((n, width, width))
+        across = np.zeros((n - 1, width, width))
+        weight = 2.0 * self.weight
+        for side, angle in enumerate((x[:-1, :3], x[1:, :3])):
+            by_angle, by_rate, by_acceleration = self._derivatives(angle, ends[side], acceleration)
+            change = by_acceleration * per_step[:, None, None]
+            blocks = [-change @ slopes[0], change @ slopes[1]]
+            blocks[side] = blocks[side] + by_rate @ slopes[side]
+            blocks[side][:, :, :3] += by_angle
+            left, right = blocks
+            miss = (weight[:, None] * off[:, side])[:, None, :]
+            gradient[:-1] += (miss @ left)[:, 0]
+            gradient[1:] += (miss @ right)[:, 0]
+            heavy = [np.swapaxes(block * weight[:, None, None], 1, 2) for block in blocks]
+            hessian[:-1] += heavy[0] @ left
+            hessian[1:] += heavy[1] @ right
+            across += heavy[0] @ right
+        value = float(self.weight @ np.sum(off**2, axis=(1, 2)))
+        return Expansion(value, gradient, hessian, across)
+
+    def _derivatives(
+        self, angle: Floats, rate: Floats, acceleration: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Return d force / d angle, / d rate and / d acceleration, (k, 3, 3) each [g]."""
+        products = rate[:, :, None] * rate[:, None, :]
+        frame, turned = self.frame(angle)[:, :3, :3], self.frame_turn(angle)[:, :, :3, :3]
+        reach, curl, twist = self.reach(angle), self.curl(angle), self.twist(angle)
+        pull = np.einsum("kjc,kj->kc", reach, acceleration)
+        pull += np.einsum("kijc,kij->kc", curl, products) + self.up
+        moved = np.einsum("kajc,kj->kac", curl, acceleration)
+        moved += np.einsum("kaijc,kij->kac", twist, products)
+        by_angle = np.einsum("kacs,kc->ksa", turned, pull) + np.einsum(
+            "kcs,kac->ksa", frame, moved
+        )
+        by_rate = 2.0 * np.einsum("kcs,kijc,kj->ksi", frame, curl, rate, optimize=True)
+        by_acceleration = np.einsum("kcs,kjc->ksj", frame, reach)
+        return (
+            by_angle / STANDARD_GRAVITY_M_S2,
+            by_rate / STANDARD_GRAVITY_M_S2,
+            by_acceleration / STANDARD_GRAVITY_M_S2,
+        )
+
+
+class AttitudeRows(Rows):
+    """The seat's attitude within an angle of the desired one, at samples.
+
+    Parameters
+    ----------
+    grid : Transcription
+    angle : float
+        [rad]
+    """
+
+    def __init__(self, grid: Transcription, angle: float) -> None:
+        super().__init__(np.arange(grid.n))
+        self.frame = grid.problem.chain.transform
+        self.turn = self.frame.gradient()
+        self.bend = self.turn.gradient()
+        self.wanted = self.frame(grid.problem.desired.angle)[:, :3, :3]
+        self.unknowns = 3 + grid.m
+        # the squared chord |R - R_desired|^2 = 8 sin^2(angle / 2) is 6 - 2 trace
+        self.per_chord = 1.0 / (8.0 * np.sin(0.5 * angle) ** 2)
+
+    def value(self, x: Floats) -> Floats:
+        """Return the squared chord over its bound, (n, 1)."""
+        off = self.frame(x[:, :3])[:, :3, :3] - self.wanted
+        return np.sum(off**2, axis=(1, 2))[:, None] * self.per_chord
+
+    def jacobian(self, x: Floats) -> tuple[Floats, None]:
+        """Return the derivative in x_k."""
+        jacobian = np.zeros((len(x), 1, self.unknowns))
+        turned = self.turn(x[:, :3])[:, :, :3, :3]
+        jacobian[:, 0, :3] = -2.0 * self.per_chord * np.einsum("kaij,kij->ka", turned, self.wanted)
+        return jacobian, None
+
+    def curvature(self, x: Floats, multiplier: Floats) -> Floats:
+        """Return the curvature along the multipliers."""
+        bent = self.bend(x[:, :3])[..., :3, :3]
+        curvature = np.zeros((len(x), self.unknowns, self.unknowns))
+        curvature[:, :3, :3] = (-2.0 * self.per_chord * multiplier)[:, :, None] * np.einsum(
+            "kabij,kij->kab", bent, self.wanted
+        )
+        return curvature
+
+
+def _squared(budget: float) -> float:
+    return float(np.sqrt(budget))
+
+
+MEASURES: dict[str, Callable[[Transcription, float, float], Measure]] = {
+    "joint_deviation_relative": lambda grid, b, g: JointDeviation(grid, b),
+    "joint_deviation_relative_squared": lambda grid, b, g: JointDeviation(grid, _squared(b)),
+    "mean_square_one_minus_p": lambda grid, b, g: FactorDeviation(grid, b),
+    "seat_rate_deviation_relative": lambda grid, b, g: SeatRateDeviation(grid, b),
+    "seat_g_deviation_relative": lambda grid, b, g: SeatGDeviation(grid, b, g, relative=True),
+    "seat_g_rms_error_g": lambda grid, b, g: SeatGDeviation(grid, b, g, relative=False),
+}
+"""Metrics of ``fidelity`` that a budget can be set on, as integrals of the motion:
+the name, and what makes the measure of a grid, a budget and a gravity."""
+
+ATTITUDE = "attitude_error_max_deg"
+"""The metric whose budget holds at every sample instead."""

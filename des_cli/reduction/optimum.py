@@ -1,0 +1,121 @@
+"""The true minimum for given weights, from several starts.
+
+Small weights r2 have worse local minima beside the best one. The way there is a
+continuation: from a weight so large that the desired motion itself is nearly
+optimal, down to the one asked for. The desired motion and the study's sweep are
+starts too, so that the result is never above either, and per joint the scalar
+optimum is one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from des_cli.model.arrays import Floats
+from des_cli.model.solution import Solution
+from des_cli.reduction.interior import Outcome
+from des_cli.reduction.problem import Problem
+from des_cli.reduction.report_sweep import sweep
+from des_cli.reduction.search import COARSE, TOLERANCE, Search
+from des_cli.reduction.transcription import Transcription
+
+# Continuation in r2: it starts where r2 outweighs the Coriolis cost by this
+# factor and goes down by at most RATIO a level.
+OUTWEIGH, RATIO = 20.0, 0.6
+
+# First barriers, relative to the problem's scale: far from every limit, and
+# nearer, for a start that is itself a solution.
+FAR, NEAR = 1.0, 1e-3
+
+
+def find_optimum(problem: Problem, search: Search) -> Solution:
+    """Find the minimum of a problem with weights.
+
+    Parameters
+    ----------
+    problem : Problem
+    search : Search
+
+    Returns
+    -------
+    Solution
+        ``converged``, ``acceptable``, ``iteration-limit`` or ``diverged``.
+    """
+    grid = Transcription(problem)
+    outcomes = [
+        search.minimise(grid, start, TOLERANCE, barrier)
+        for start, barrier in _starts(problem, grid, search)
+    ]
+    return make_solution(grid, best_of(outcomes), search, len(outcomes))
+
+
+def best_of(outcomes: list[Outcome]) -> Outcome:
+    """Return the usable outcome of the lowest cost."""
+    order = ("converged", "acceptable", "iteration-limit", "diverged")
+    return min(outcomes, key=lambda o: (order.index(o.status), o.cost))
+
+
+def make_solution(grid: Transcription, best: Outcome, search: Search, starts: int) -> Solution:
+    """Turn an outcome into the solution of its problem."""
+    return Solution(
+        status=best.status,
+        message=_sentence(best, starts, search),
+        control=best.x[:, 3:],
+        modified=grid.motion(best.x),
+        adjoint=grid.adjoint(best.x, best.multiplier),
+        cost=best.cost,
+        cost_unreduced=grid.cost(grid.desired),
+        optimality=best.optimality,
+        iterations=len(search.lines),
+        log=tuple(search.lines),
+    )
+
+
+def _starts(
+    problem: Problem, grid: Transcription, search: Search
+) -> Iterator[tuple[Floats, float]]:
+    """Yield starts with their barriers."""
+    yield grid.desired, FAR
+    if not grid.rows:
+        x = grid.desired
+        for level in _levels(problem, grid):
+            looser = Transcription(replace(problem, r2=level * problem.r2))
+            x = search.minimise(looser, x, COARSE).x
+        yield x, FAR
+        if problem.jacobian == "desired" and not np.any(grid.pinned[:, 3:]):
+            swept = grid.follow(sweep(problem).control)
+            if grid.cost(swept) < grid.cost(grid.desired):
+                yield swept, FAR
+    if grid.m == 3 and not np.any(problem.held):
+        scalar = Transcription(replace(problem, r2=np.array([problem.r2.sum()])))
+        x = search.minimise(scalar, scalar.desired, COARSE).x
+        yield np.hstack([x[:, :3], np.repeat(x[:, 3:], 3, axis=1)]), NEAR
+
+
+def _levels(problem: Problem, grid: Transcription) -> Floats:
+    """Return the factors on r2 to go down, largest first, without the last one, 1."""
+    coriolis_only = replace(problem, r2=0.0 * problem.r2, tracking=np.zeros(3))
+    force = Transcription(coriolis_only).gradient(grid.desired)[:, 3:] / grid.weight[:, None]
+    needed = OUTWEIGH * float(np.max(np.abs(force))) / problem.r2.min()
+    if needed <= 1.0:
+        return np.empty(0)
+    count = int(np.ceil(np.log(needed) / -np.log(RATIO)))
+    return np.geomspace(needed, 1.0, count + 1)[:-1]
+
+
+def _sentence(best: Outcome, starts: int, search: Search) -> str:
+    steps = f"{len(search.lines)} steps in all"
+    if best.status == "converged":
+        of = "" if starts == 1 else f", the best of {starts} starts"
+        return f"first-order optimal to {best.optimality:.1e}{of}, {steps}"
+    off = f"the first-order conditions are off by {best.optimality:.1e}"
+    if best.infeasibility > TOLERANCE:
+        off += f" and the constraints by {best.infeasibility:.1e}"
+    if best.status == "acceptable":
+        return f"short of the tolerance {TOLERANCE:g}: {off}; {steps}"
+    if best.status == "iteration-limit":
+        return f"{off} after {steps}; raise reduction.max_iterations ({search.limit})"
+    return f"no step makes it better although {off}; check weights and limits"

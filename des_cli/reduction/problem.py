@@ -1,0 +1,104 @@
+"""The reduction problem as data: what is minimised, over what, within what.
+
+A desired motion Theta, factors u on its rates, and the adapted motion theta that
+they make (section 6 of ``docs/theory.md``)::
+
+    theta' = u * phi,   phi = J^-1 W,   theta(t0) = Theta(t0)
+    J = 1/2 int  c' R1 c + sum_i r2_i (1 - u_i)^2 + (Theta - theta)' Q (Theta - theta)  dt
+
+How it is solved stands elsewhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from des_cli.kinematics.chain import Chain, chain_of
+from des_cli.model.arrays import Flags, Floats, freeze
+from des_cli.model.machine import JOINTS, Machine
+from des_cli.model.motion import Motion
+from des_cli.model.profile import Axes, Control, Ends, JacobianAt, Profile
+from des_cli.units import STANDARD_GRAVITY_M_S2
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Minimum Coriolis along a desired motion.
+
+    Parameters
+    ----------
+    desired : Motion
+        Theta and its rates on the sample grid.
+    chain : Chain
+        The machine's kinematics, from the ground to the seat.
+    axes : {"report", "seat"}
+        Axes in which the Coriolis vector is weighted.
+    r1 : (3, 3) array
+        Weight on the Coriolis components.
+    r2 : (m,) array
+        Weight on ``(1 - u_i)^2``; m = 1 for a scalar control, 3 per joint.
+    tracking : (3,) array
+        Diagonal of Q.
+    jacobian : {"desired", "adapted"}
+        The angles at which phi is taken.
+    held : (3,) array of bool
+        Joints whose factor stays one (per joint only).
+    ends : {"free", "match-start", "match-both"}
+        Whether factors (and angles) equal the desired ones at the ends.
+    machine : Machine, optional
+        Its limits hold for the adapted motion; None for no limits.
+    gravity : float
+        [m/s^2]
+    """
+
+    desired: Motion
+    chain: Chain
+    axes: Axes
+    r1: Floats
+    r2: Floats
+    tracking: Floats
+    jacobian: JacobianAt = "desired"
+    held: Flags = field(default_factory=lambda: np.zeros(3, dtype=bool))
+    ends: Ends = "free"
+    machine: Machine | None = None
+    gravity: float = STANDARD_GRAVITY_M_S2
+
+    def __post_init__(self) -> None:
+        freeze(self, "r1", (3, 3))
+        freeze(self, "r2", (None,))
+        freeze(self, "tracking", (3,))
+
+    @property
+    def controls(self) -> int:
+        """Number of factors m: 1 (scalar p) or 3 (one per joint)."""
+        return len(self.r2)
+
+
+def control_weight(control: Control, r2: Floats) -> Floats:
+    """Return the weight of each factor, (m,).
+
+    Per joint, each factor has a third of its joint's weight, and the scalar has
+    the mean: three equal factors cost what the scalar costs, so that the optimum
+    per joint is never above the scalar one.
+    """
+    return np.array([r2.mean()]) if control == "scalar" else r2 / 3.0
+
+
+def pose_problem(profile: Profile, desired: Motion) -> Problem:
+    """Make the problem that a profile asks for along a desired motion."""
+    wanted = profile.reduction
+    return Problem(
+        desired=desired,
+        chain=chain_of(profile.machine, profile.seat),
+        axes=wanted.axes,
+        r1=wanted.r1,
+        r2=control_weight(wanted.control, wanted.r2),
+        tracking=wanted.tracking,
+        jacobian=wanted.jacobian,
+        held=np.array([joint in wanted.hold for joint in JOINTS]),
+        ends=wanted.ends,
+        machine=profile.machine if wanted.limits == "enforce" else None,
+        gravity=profile.machine.gravity,
+    )

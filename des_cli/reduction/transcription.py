@@ -1,0 +1,338 @@
+"""The reduction problem on the sample grid: cost, dynamics, and their derivatives.
+
+Unknowns stand in one array ``x`` of shape (n, 3 + m): at each of the n samples
+the adapted angles theta (3) and the factors u (m). Between samples the rates
+are linear, so that
+
+    theta_{k+1} = theta_k + h/2 (theta'_k + theta'_{k+1}) + d_k (u_k + u_{k+1}) / 2
+
+with d_k what the trapezoidal rule misses of the desired increment: u = 1 returns
+the desired motion exactly. The cost is the trapezoidal rule over the two sides of
+every interval; a sample at which the desired rate steps counts once for each side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from des_cli.kinematics.coriolis import (
+    PAIRS,
+    coriolis_pairs,
+    coriolis_pairs_gradient,
+    coriolis_pairs_hessian,
+)
+from des_cli.model.arrays import Flags, Floats
+from des_cli.model.motion import Motion
+from des_cli.reduction.constraints import Rows, limit_rows
+from des_cli.reduction.points import Points
+from des_cli.reduction.problem import Problem
+from des_cli.reduction.rates import AdaptedRates, DesiredRates, Rates
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """Cost with its first and second derivatives at one iterate.
+
+    Parameters
+    ----------
+    cost : float
+    gradient : (n, 3 + m) array
+    hessian : (n, 3 + m, 3 + m) array
+        Blocks (k, k) of the Gauss-Newton Hessian: positive semidefinite.
+    across : (n - 1, 3 + m, 3 + m) array, optional
+        Its blocks (k, k + 1), where the cost couples neighbours.
+    bend : (n, 3 + m, 3 + m) array, optional
+        What is missing to the exact Hessian.
+    """
+
+    cost: float
+    gradient: Floats
+    hessian: Floats
+    across: Floats | None = None
+    bend: Floats | None = None
+
+    def plus(self, price: float, other: Expansion) -> Expansion:
+        """Add another expansion at a price."""
+        return Expansion(
+            self.cost + price * other.cost,
+            self.gradient + price * other.gradient,
+            self.hessian + price * other.hessian,
+            _add(self.across, price, other.across),
+            _add(self.bend, price, other.bend),
+        )
+
+
+class Measure(Protocol):
+    """A measure of a whole motion, scaled so that its budget is one."""
+
+    def value(self, x: Floats) -> float:
+        """Return the value of an iterate."""
+
+    def expand(self, x: Floats) -> Expansion:
+        """Expand the value to second order; the Hessian may be a Gauss-Newton one."""
+
+
+@dataclass(frozen=True)
+class CoriolisForm:
+    """The Coriolis vector at the points with its first derivatives in x.
+
+    Parameters
+    ----------
+    value : (q, 3) array
+    jacobian : (q, 3, 3 + m) array
+    """
+
+    value: Floats
+    jacobian: Floats
+
+
+class Transcription:
+    """A problem on its grid.
+
+    Parameters
+    ----------
+    problem : Problem
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        motion = problem.desired
+        self.n = len(motion.t)
+        self.m = problem.controls
+        self.joint = np.ones((3, 1)) if self.m == 1 else np.eye(3)
+        self.points = Points.of(motion)
+        self.weight = self.points.scatter(self.points.weight, self.n)
+        self.rates = self._rates()
+        self._half = 0.5 * motion.step[:, None, None]
+        straight = self._half[:, 0] * (motion.rate_start + motion.rate_end)
+        missed = np.diff(motion.angle, axis=0) - straight
+        # The arm is commanded by its velocity: its angle is what the table's
+        # velocities integrate to, whatever the desired angle's quadrature was.
+        missed[:, 0] = 0.0
+        self._missed = 0.5 * missed[:, :, None] * self.joint
+        self.desired = np.hstack([motion.angle, np.ones((self.n, self.m))])
+        """The iterate of the desired motion, u = 1."""
+        self.pinned = self._pins()
+        self.rows: list[Rows] = []
+        if problem.machine is not None:
+            self.rows += limit_rows(problem.machine, self.rates, motion.step, 3 + self.m)
+        self.offset = np.zeros((len(self.points.node), 3))
+        """Added to the Coriolis vector at the points where the cost weighs it."""
+        self.priced: list[tuple[float, Measure]] = []
+        """Measures that are paid for in the cost, with their prices."""
+        self.scale = self._typical_size()
+
+    def _rates(self) -> Rates:
+        motion, points = self.problem.desired, self.points
+        if self.problem.jacobian == "desired":
+            return DesiredRates(points.rate, self.joint)
+        angle = points.gather(motion.angle)
+        return AdaptedRates(self.problem.chain, angle, points.rate, self.joint)
+
+    def _pins(self) -> Flags:
+        pinned = np.zeros((self.n, 3 + self.m), dtype=bool)
+        pinned[0, :3] = True  # theta(t0) = Theta(t0)
+        if self.m == 3:
+            pinned[:, 3:] |= self.problem.held
+        if self.problem.ends != "free":
+            pinned[0] = True
+        if self.problem.ends == "match-both":
+            pinned[-1] = True
+        return pinned
+
+    # ------------------------------------------------------------------ dynamics
+    def motion(self, x: Floats) -> Motion:
+        """Return the motion of an iterate, with its rates on both sides of each sample."""
+        rate = self.rates.value(self.points.gather(x))
+        return Motion(
+            t=self.problem.desired.t,
+            angle=x[:, :3],
+            rate_start=rate[self.points.start],
+            rate_end=rate[self.points.end],
+        )
+
+    def defect(self, x: Floats) -> Floats:
+        """Return the residual of the dynamics over each interval, (n - 1, 3) [rad]."""
+        rate = self.rates.value(self.points.gather(x))
+        made = self._half[:, :, 0] * (rate[self.points.start] + rate[self.points.end])
+        made += ((x[:-1, 3:] + x[1:, 3:])[:, None, :] * self._missed).sum(axis=2)
+        return np.asarray(np.diff(x[:, :3], axis=0) - made)
+
+    def defect_jacobian(self, x: Floats) -> tuple[Floats, Floats]:
+        """Return d defect_k / d x_k and / d x_{k+1}, (n - 1, 3, 3 + m) each."""
+        _, slope = self.rates.expand(self.points.gather(x))
+        left = -self._half * slope[self.points.start]
+        ahead = -self._half * slope[self.points.end]
+        for block, sign in ((left, -1.0), (ahead, 1.0)):
+            block[:, :, :3] += sign * np.eye(3)
+            block[:, :, 3:] -= self._missed
+        return left, ahead
+
+    def defect_curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
+        """Return the second derivatives of multiplier' defect, (n, 3 + m, 3 + m), or None."""
+        pull = np.zeros((len(self.points.node), 3))
+        pull[self.points.start] -= self._half[:, :, 0] * multiplier
+        pull[self.points.end] -= self._half[:, :, 0] * multiplier
+        bend = self.rates.bend(self.points.gather(x), pull)
+        return None if bend is None else self.points.scatter(bend, self.n)
+
+    def follow(self, control: Floats) -> Floats:
+        """Integrate factors (n, m) to an iterate on the dynamics of the desired Jacobian."""
+        x = np.hstack([self.problem.desired.angle, control])
+        made = -self.defect(x) + np.diff(x[:, :3], axis=0)
+        x[1:, :3] = x[0, :3] + np.cumsum(made, axis=0)
+        return x
+
+    # ------------------------------------------------------------------ cost
+    def coriolis(self, x: Floats) -> Floats:
+        """Return the Coriolis vector at the points, (q, 3) [rad/s^2]."""
+        here = self.points.gather(x)
+        pairs = coriolis_pairs(self.problem.chain, here[:, :3], self.problem.axes)
+        return np.asarray((rate_products(self.rates.value(here))[:, None, :] @ pairs)[:, 0])
+
+    def cost(self, x: Floats) -> float:
+        """Return J of an iterate, and the price of what is paid for."""
+        cost = float(self.points.weight @ self._density(x, self.coriolis(x)))
+        return cost + sum(price * measure.value(x) for price, measure in self.priced)
+
+    def _density(self, x: Floats, c: Floats) -> Floats:
+        problem, here = self.problem, self.points.gather(x)
+        off = here[:, :3] - self.points.gather(problem.desired.angle)
+        weighed = c + self.offset
+        density: Floats = 0.5 * (
+            np.sum((weighed @ problem.r1) * weighed, axis=1)
+            + (1.0 - here[:, 3:]) ** 2 @ problem.r2
+            + off**2 @ problem.tracking
+        )
+        return density
+
+    def coriolis_form(self, x: Floats) -> CoriolisForm:
+        """Return the Coriolis vector at the points and its Jacobian."""
+        here = self.points.gather(x)
+        angle = here[:, :3]
+        rate, slope = self.rates.expand(here)
+        pairs = coriolis_pairs(self.problem.chain, angle, self.problem.axes)
+        turn = coriolis_pairs_gradient(self.problem.chain, angle, self.problem.axes)
+        products = rate_products(rate)
+        jacobian = np.swapaxes(pairs, 1, 2) @ (_rate_products_jacobian(rate) @ slope)
+        jacobian[:, :, :3] += np.swapaxes((products[:, None, None, :] @ turn)[:, :, 0], 1, 2)
+        return CoriolisForm((products[:, None, :] @ pairs)[:, 0], jacobian)
+
+    def coriolis_curvature(self, x: Floats, pull: Floats) -> Floats:
+        """Return sum_q pull_q d2 c_q / dx dx at the points, (q, 3 + m, 3 + m)."""
+        problem, here = self.problem, self.points.gather(x)
+        angle = here[:, :3]
+        rate, slope = self.rates.expand(here)
+        products, gain = rate_products(rate), _rate_products_jacobian(rate)
+        pairs = coriolis_pairs(problem.chain, angle, problem.axes)
+        turn = coriolis_pairs_gradient(problem.chain, angle, problem.axes)
+        bend = coriolis_pairs_hessian(problem.chain, angle, problem.axes)
+        along = (pairs @ pull[:, :, None])[:, :, 0]  # of each pair
+        turned = (turn @ pull[:, None, :, None])[:, :, :, 0] @ gain  # (q, angle, rate)
+        bent = (bend @ pull[:, None, None, :, None])[..., 0] @ products[:, None, :, None]
+        cross = turned @ slope  # (q, angle, 3 + m)
+        bilinear = np.zeros((len(angle), 3, 3))
+        for pair, (i, j) in enumerate(PAIRS):
+            bilinear[:, i, j] = bilinear[:, j, i] = along[:, pair]
+        curvature: Floats = np.swapaxes(slope, 1, 2) @ bilinear @ slope
+        curvature[:, :3, :3] += bent[..., 0]
+        curvature[:, :3, :] += cross
+        curvature[:, :, :3] += np.swapaxes(cross, 1, 2)
+        through_rates = self.rates.bend(here, (along[:, None, :] @ gain)[:, 0])
+        return curvature if through_rates is None else curvature + through_rates
+
+    def expand(self, x: Floats) -> Expansion:
+        """Expand the cost to second order.
+
+        Parameters
+        ----------
+        x : (n, 3 + m) array
+        """
+        problem, points = self.problem, self.points
+        form = self.coriolis_form(x)
+        gradient, pull = self._point_gradient(x, form)
+        hessian = np.swapaxes(form.jacobian, 1, 2) @ problem.r1 @ form.jacobian
+        bend = points.scatter(points.weight[:, None, None] * self.coriolis_curvature(x, pull), self.n)
+        diagonal = np.concatenate([problem.tracking, problem.r2])
+        hessian[:, np.arange(3 + self.m), np.arange(3 + self.m)] += diagonal
+        expansion = Expansion(
+            cost=float(points.weight @ self._density(x, form.value)),
+            gradient=points.scatter(points.weight[:, None] * gradient, self.n),
+            hessian=points.scatter(points.weight[:, None, None] * hessian, self.n),
+            bend=bend,
+        )
+        for price, measure in self.priced:
+            expansion = expansion.plus(price, measure.expand(x))
+        return expansion
+
+    def _point_gradient(self, x: Floats, form: CoriolisForm) -> tuple[Floats, Floats]:
+        """Return the running cost's gradient at the points, and R1 times what it weighs."""
+        problem, here = self.problem, self.points.gather(x)
+        pull = (form.value + self.offset) @ problem.r1
+        gradient = (pull[:, None, :] @ form.jacobian)[:, 0]
+        gradient[:, 3:] += (here[:, 3:] - 1.0) * problem.r2
+        off = here[:, :3] - self.points.gather(problem.desired.angle)
+        gradient[:, :3] += off * problem.tracking
+        return gradient, pull
+
+    def gradient(self, x: Floats) -> Floats:
+        """Return dJ/dx at fixed neighbours, (n, 3 + m)."""
+        density = self._point_gradient(x, self.coriolis_form(x))[0]
+        gradient = self.points.scatter(self.points.weight[:, None] * density, self.n)
+        for price, measure in self.priced:
+            gradient = gradient + price * measure.expand(x).gradient
+        return gradient
+
+    # ------------------------------------------------------------------ first order
+    def reduced_gradient(self, x: Floats) -> Floats:
+        """Return dJ/du with the angles following u, (n, m), for the desired Jacobian."""
+        gradient = self.gradient(x)
+        left, ahead = self.defect_jacobian(x)
+        later = np.cumsum(gradient[:0:-1, :3], axis=0)[::-1]  # dJ/dtheta of all later samples
+        reduced = gradient[:, 3:].copy()
+        reduced[:-1] -= (later[:, None, :] @ left[:, :, 3:])[:, 0]
+        reduced[1:] -= (later[:, None, :] @ ahead[:, :, 3:])[:, 0]
+        return reduced
+
+    def adjoint(self, x: Floats, multiplier: Floats) -> Floats:
+        """Return the costate of the angles at each sample, (n, 3).
+
+        Parameters
+        ----------
+        x : (n, 3 + m) array
+        multiplier : (n - 1, 3) array
+            Of ``defect``: minus the costate between samples. Half a sample's
+            weight of dJ/dtheta leads to the sample itself.
+        """
+        force = self.gradient(x)[:, :3] / self.weight[:, None]
+        half = 0.5 * self.problem.desired.step[:, None]
+        between = -multiplier  # of the interval's constraint, in the sign of (42) and (47)
+        return np.vstack([between + half * force[:-1], between[-1:] - half[-1:] * force[-1:]])
+
+    def _typical_size(self) -> float:
+        """Return the size of dJ/du per unit time that the desired motion meets."""
+        force = self.gradient(self.desired)[:, 3:] / self.weight[:, None]
+        return float(max(np.max(np.abs(force)), np.max(self.problem.r2), 1e-12))
+
+
+def _add(one: Floats | None, price: float, other: Floats | None) -> Floats | None:
+    if other is None:
+        return one
+    return price * other if one is None else one + price * other
+
+
+def rate_products(rate: Floats) -> Floats:
+    """Return theta_i' theta_j' for the joint pairs, (q, 3)."""
+    return np.stack([rate[:, i] * rate[:, j] for i, j in PAIRS], axis=1)
+
+
+def _rate_products_jacobian(rate: Floats) -> Floats:
+    """Return d(theta_i' theta_j') / d theta', (q, 3 pairs, 3 rates)."""
+    jacobian = np.zeros((len(rate), 3, 3))
+    for pair, (i, j) in enumerate(PAIRS):
+        jacobian[:, pair, i] = rate[:, j]
+        jacobian[:, pair, j] = rate[:, i]
+    return jacobian

@@ -1,0 +1,101 @@
+"""Banded solutions against dense ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from des_cli.reduction.banded import is_positive_definite, solve_block_tridiagonal
+
+
+def dense(diagonal, upper, lower):
+    """The whole matrix of a block tridiagonal one."""
+    n, b, _ = diagonal.shape
+    matrix = np.zeros((n, b, n, b))
+    k = np.arange(n)
+    matrix[k, :, k, :] = diagonal
+    matrix[k[:-1], :, k[1:], :] = upper
+    matrix[k[1:], :, k[:-1], :] = lower
+    return matrix.reshape(n * b, n * b)
+
+
+def blocks(rng, n, b, density=1.0):
+    """Random blocks, of which a share of the places is zero in every block."""
+    mask = rng.uniform(size=(3, b, b)) <= density
+    diagonal = rng.normal(size=(n, b, b)) * mask[0] + 3.0 * np.eye(b)
+    return (
+        diagonal,
+        rng.normal(size=(n - 1, b, b)) * mask[1],
+        rng.normal(size=(n - 1, b, b)) * mask[2],
+    )
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(
+    seed=st.integers(0, 10_000),
+    n=st.integers(1, 7),
+    b=st.integers(1, 9),
+    columns=st.integers(1, 3),
+    density=st.sampled_from([0.1, 0.4, 1.0]),
+)
+def test_solves_as_dense(seed, n, b, columns, density):
+    rng = np.random.default_rng(seed)
+    diagonal, upper, lower = blocks(rng, n, b, density)
+    matrix = dense(diagonal, upper, lower)
+    right = rng.normal(size=(n, b, columns))
+    solution = solve_block_tridiagonal(diagonal, upper, lower, right)
+    assert solution is not None
+    residual = matrix @ solution.reshape(n * b, columns) - right.reshape(n * b, columns)
+    scale = np.abs(matrix).sum(axis=1).max() * np.abs(solution).max() + np.abs(right).max()
+    assert np.abs(residual).max() <= 1e-13 * scale
+    if np.linalg.cond(matrix) < 1e6:
+        expected = np.linalg.solve(matrix, right.reshape(n * b, columns))
+        np.testing.assert_allclose(solution.reshape(n * b, columns), expected, rtol=1e-8, atol=1e-8)
+
+
+def test_needs_pivoting():
+    # A saddle point: the multiplier's own diagonal is zero.
+    diagonal = np.array([[[0.0, 1.0], [1.0, 0.0]]] * 3)
+    coupling = np.zeros((2, 2, 2))
+    right = np.arange(6.0).reshape(3, 2, 1)
+    solution = solve_block_tridiagonal(diagonal, coupling, coupling, right)
+    np.testing.assert_allclose(solution[:, :, 0], right[:, ::-1, 0])
+
+
+def test_leaves_its_arguments_alone():
+    rng = np.random.default_rng(1)
+    arguments = [*blocks(rng, 5, 4), rng.normal(size=(5, 4, 1))]
+    copies = [each.copy() for each in arguments]
+    solve_block_tridiagonal(*arguments)
+    is_positive_definite(*arguments[:2])
+    for argument, copy in zip(arguments, copies, strict=True):
+        np.testing.assert_array_equal(argument, copy)
+
+
+@pytest.mark.parametrize("value", [0.0, np.nan])
+def test_a_singular_system_has_no_solution(value):
+    diagonal = np.array([np.eye(2)] * 3)
+    diagonal[1, 1, 1] = value
+    coupling = np.zeros((2, 2, 2))
+    assert solve_block_tridiagonal(diagonal, coupling, coupling, np.ones((3, 2, 1))) is None
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(
+    seed=st.integers(0, 10_000),
+    n=st.integers(1, 6),
+    b=st.integers(1, 6),
+    margin=st.floats(1e-6, 1.0),
+    above=st.booleans(),
+)
+def test_positive_definite_as_the_eigenvalues_say(seed, n, b, margin, above):
+    rng = np.random.default_rng(seed)
+    diagonal, upper, _ = blocks(rng, n, b, 0.6)
+    diagonal = diagonal + np.swapaxes(diagonal, 1, 2)
+    matrix = dense(diagonal, upper, np.swapaxes(upper, 1, 2))
+    # Shift so that the least eigenvalue is the margin, or minus the margin.
+    least = np.linalg.eigvalsh(matrix)[0]
+    shifted = diagonal + ((margin if above else -margin) - least) * np.eye(b)
+    assert is_positive_definite(shifted, upper) is above

@@ -1,0 +1,79 @@
+"""Inequalities: their derivatives by differences, their values by the machine's limits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from des_cli.model.machines import DES
+from des_cli.reduction.transcription import Transcription
+
+
+@pytest.fixture(params=["desired", "adapted"])
+def grid(request, wave, pose):
+    motion = wave([[0.5, 0.2, 0.1], [0.2, 0.3, 0.1], [0.2, -0.2, 0.15]], intervals=12)
+    problem = pose(motion, control="per-joint", jacobian=request.param, machine=DES)
+    return Transcription(problem)
+
+
+@pytest.fixture
+def x(grid):
+    return grid.desired + 0.1 * np.random.default_rng(4).normal(size=grid.desired.shape)
+
+
+def along(function, x, move, h=1e-3):
+    """Sixth-order difference of a function along a direction."""
+    weights = {1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
+    return sum(
+        w * (function(x + k * h * move) - function(x - k * h * move)) / h
+        for k, w in weights.items()
+    )
+
+
+def test_jacobians_and_curvatures(grid, x):
+    rng = np.random.default_rng(5)
+    assert len(grid.rows) == 3
+    for rows in grid.rows:
+        move, multiplier = rng.normal(size=x.shape), rng.normal(size=rows.value(x).shape)
+
+        def pull_back(at, rows=rows, multiplier=multiplier):
+            """The gradient of multiplier' value."""
+            at_node, at_next = rows.jacobian(at)
+            force = np.zeros_like(at)
+            np.add.at(force, rows.node, (multiplier[:, None, :] @ at_node)[:, 0])
+            if at_next is not None:
+                np.add.at(force, rows.node + 1, (multiplier[:, None, :] @ at_next)[:, 0])
+            return force
+
+        slope = np.sum(along(rows.value, x, move) * multiplier)
+        assert np.sum(pull_back(x) * move) == pytest.approx(slope, rel=1e-8)
+        curvature = rows.curvature(x, multiplier)
+        bent = 0.0 if curvature is None else (curvature @ move[:, :, None])[:, :, 0]
+        np.testing.assert_allclose(along(pull_back, x, move), bent + 0.0 * move, atol=1e-7)
+
+
+def test_values_are_shares_of_the_limits(grid, x):
+    motion = grid.motion(x)
+    rate, acceleration, angle = (
+        np.array([getattr(limit, name) for limit in DES.limits])
+        for name in ("rate", "acceleration", "angle")
+    )
+    at_samples = np.vstack([motion.rate_start, motion.rate_end[-1:]])
+    expected = [
+        at_samples / rate,
+        (motion.rate_end - motion.rate_start) / motion.step[:, None] / acceleration,
+        motion.angle[:, 1:] / angle[1:],  # the arm turns endlessly
+    ]
+    for rows, values in zip(grid.rows, expected, strict=True):
+        found = rows.value(x)
+        np.testing.assert_allclose(found, values, rtol=0.06, atol=1e-12)
+        assert (np.abs(found) >= np.abs(values)).all()  # drawn in, never out
+
+
+def test_an_angle_leaves_room_for_the_parabola_between_samples(grid):
+    *_, angles = grid.rows
+    x = np.zeros_like(grid.desired)
+    step = grid.problem.desired.step[0]
+    bulge = np.array([limit.acceleration for limit in DES.limits[1:]]) * step**2 / 8.0
+    x[:, 1:3] = 2.0 * np.pi - bulge
+    np.testing.assert_allclose(angles.value(x), 1.0, atol=1e-8)
