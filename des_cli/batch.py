@@ -1,0 +1,265 @@
+"""One profile from its source to its output, and many of them over an Executor.
+
+A job is plain data that can cross a process boundary, and so is its result: a
+pool of this machine and a ``dask.distributed`` client's executor
+(``client.get_executor()``) are one code path.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from des_cli.errors import DesError, ExitCode, FileAccessError, Problem, UsageError
+from des_cli.failure import Failure
+from des_cli.job import STANDARD_STREAM, Job, JobResult
+
+# What needs numpy is imported when a job runs: a worker must be able to set its
+# number of BLAS threads before that, and a rejected command line needs none.
+if TYPE_CHECKING:
+    from des_cli.model.profile import Profile
+    from des_cli.model.run import Run
+    from des_cli.model.solution import Iteration
+
+# With these a job leaves no command table under its name, not even an older one.
+_NO_TABLE = (ExitCode.PROFILE, ExitCode.NO_SOLUTION, ExitCode.NOT_RELEASED)
+
+
+def run_job(job: Job, on_iteration: Callable[[Iteration], None] | None = None) -> JobResult:
+    """Load a profile, reduce it, require its release, and write the output.
+
+    Whatever fails becomes part of the result, so that one profile of a batch
+    does not end the others; only an interruption and a reader that went away
+    pass through.
+
+    Parameters
+    ----------
+    job : Job
+    on_iteration : callable, optional
+        Called with each of the solver's iterations.
+    """
+    result = _run_job(job, on_iteration)
+    if result.exit_code not in _NO_TABLE or not job.overwrite or job.dry_run:
+        return result
+    try:
+        return replace(result, notices=(*result.notices, *_withdraw(job, result.name)))
+    except (DesError, OSError) as error:
+        return replace(result, problems=(*result.problems, *Failure.of(error).lines))
+
+
+def run_jobs(
+    jobs: Sequence[Job],
+    executor: Executor | None = None,
+    *,
+    keep_going: bool = False,
+    on_iteration: Callable[[Iteration], None] | None = None,
+) -> Iterator[JobResult]:
+    """Yield the result of every job, in the order of the jobs.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+    executor : Executor, optional
+        Runs them; without one they run here, one after the other.
+    keep_going : bool
+        Whether to go on after a failed job; without it no job is begun that
+        has not begun, and none of those has a result.
+    on_iteration : callable, optional
+        For jobs that run here.
+    """
+    if executor is None:
+        for job in jobs:
+            result = run_job(job, on_iteration)
+            yield result
+            if result.exit_code and not keep_going:
+                return
+        return
+    futures = [executor.submit(run_job, job) for job in jobs]
+    try:
+        for job, future in zip(jobs, futures, strict=True):
+            # What had begun when another job failed is finished and told.
+            if future.cancelled():
+                continue
+            result = _result_of(job, future)
+            if result.exit_code and not keep_going:
+                _cancel(futures)
+            yield result
+    finally:
+        _cancel(futures)
+
+
+def load_job(job: Job) -> Profile:
+    """Load the profile of a job with its overrides."""
+    from des_cli.files.load import load_profile
+
+    return load_profile(
+        job.source, settings=job.settings, columns=dict(job.columns) or None, stdin=job.stdin
+    )
+
+
+def require_distinct_names(jobs: Iterable[Job]) -> None:
+    """Refuse a batch in which two profiles would share a run folder.
+
+    A profile that cannot be loaded has no name and is passed over here: its
+    own job says what is wrong with it.
+
+    Raises
+    ------
+    UsageError
+        Naming the sources that share a name, one line for each name.
+    """
+    sources = defaultdict(list)
+    for job in jobs:
+        try:
+            sources[load_job(job).name].append(job.source)
+        except (DesError, OSError):
+            continue
+    problems = [
+        Problem(name, f"several profiles have this name: {', '.join(same)}; rename all but one")
+        for name, same in sources.items()
+        if len(same) > 1
+    ]
+    if problems:
+        raise UsageError(problems)
+
+
+def _run_job(job: Job, on_iteration: Callable[[Iteration], None] | None) -> JobResult:
+    name = ""
+    try:
+        profile = load_job(job)
+        name = profile.name
+        target = job.destination(name)
+        if job.resume and _holds_run_of(target, profile):
+            return JobResult(job.source, name, written=str(target), state="kept")
+        _refuse_existing(job, target)
+        if job.dry_run:
+            return JobResult(job.source, name, written=str(target), state="planned")
+        return _reduce_and_write(job, profile, target, on_iteration)
+    except BrokenPipeError:
+        raise
+    except Exception as error:
+        return JobResult.failed(job, error, name)
+
+
+def _reduce_and_write(
+    job: Job,
+    profile: Profile,
+    target: Path,
+    on_iteration: Callable[[Iteration], None] | None,
+) -> JobResult:
+    from des_cli.pipeline import reduce_profile
+
+    run = reduce_profile(profile, on_iteration=on_iteration)
+    told: dict[str, Any] = {
+        "notices": run.notices,
+        "violations": tuple(str(violation) for violation in run.violations),
+        "metrics": run.metrics,
+        "objective": _weighted_components(profile),
+        "log": run.solution.log,
+    }
+    try:
+        run.require_release()
+        table = _write(job, run, target)
+    except DesError as error:
+        # What the solver found explains the refusal: it is told all the same.
+        lines = tuple(str(problem) for problem in error.problems)
+        return JobResult(job.source, profile.name, error.exit_code, lines, state="failed", **told)
+    return JobResult(job.source, profile.name, written=str(target), table=table, **told)
+
+
+def _write(job: Job, run: Run, target: Path) -> bytes | None:
+    """Write a run folder or a table; return the table that belongs on stdout."""
+    if job.table_format is None:
+        from des_cli.files.run_folder import write_run
+
+        write_run(run, target, plots=job.plots, overwrite=job.overwrite)
+        return None
+    from des_cli.files.atomic import write_file
+    from des_cli.files.tables import command_columns, encode_table
+
+    table = encode_table(command_columns(run), job.table_format)
+    if job.out == STANDARD_STREAM:
+        return table
+    write_file(target, table, overwrite=job.overwrite)
+    return None
+
+
+def _refuse_existing(job: Job, target: Path) -> None:
+    """Refuse before solving what would be refused when writing."""
+    if job.out == STANDARD_STREAM:
+        return
+    if job.table_format is not None:
+        if not target.parent.is_dir():
+            what = "cannot be written: the folder does not exist"
+            raise FileAccessError([Problem(str(target), what)])
+        taken = target.is_file()
+    else:
+        taken = target.is_file() or (target.is_dir() and any(target.iterdir()))
+    if not taken or job.overwrite:
+        return
+    what = "exists; --overwrite replaces it"
+    if job.resume:
+        what = "is not a finished run of this very profile; --overwrite replaces it"
+    raise FileAccessError([Problem(str(target), what)])
+
+
+def _withdraw(job: Job, name: str) -> tuple[str, ...]:
+    """Remove the earlier output that a failed job was to replace.
+
+    Otherwise a console would find, under the name that it asked for, commands
+    that are not this profile's.
+    """
+    if job.out == STANDARD_STREAM or (job.out_is_parent and not name):
+        return ()
+    from des_cli.files.manifest import is_run
+    from des_cli.files.run_folder import discard_run
+
+    target = job.destination(name)
+    if job.table_format is not None and target.is_file():
+        target.unlink(missing_ok=True)
+    elif job.table_format is None and is_run(target):
+        discard_run(target)
+    else:
+        return ()
+    return (f"withdrew the earlier {target}: it is not what this profile asks for",)
+
+
+def _holds_run_of(folder: Path, profile: Profile) -> bool:
+    from des_cli.files.manifest import is_run
+    from des_cli.files.run_folder import read_run
+
+    if not is_run(folder):
+        return False
+    try:
+        stored = read_run(folder).metrics["profile"]["sha256"]
+    except (DesError, OSError, KeyError):
+        return False
+    return bool(profile.sha256) and stored == profile.sha256
+
+
+def _weighted_components(profile: Profile) -> tuple[str, ...]:
+    """Name the Coriolis components on which r1 puts a weight."""
+    names = {"report": ("ab3", "bb3", "cb3"), "seat": ("seat_x", "seat_y", "seat_z")}
+    weights = profile.reduction.r1.diagonal()
+    pairs = zip(names[profile.reduction.axes], weights, strict=True)
+    return tuple(name for name, weight in pairs if weight != 0.0)
+
+
+def _cancel(futures: Iterable[Future[JobResult]]) -> None:
+    """Cancel every job that has not begun."""
+    for future in futures:
+        future.cancel()
+
+
+def _result_of(job: Job, future: Future[JobResult]) -> JobResult:
+    try:
+        return future.result()
+    except BrokenExecutor:
+        lost = "its worker process died, perhaps for want of memory; try fewer --jobs"
+        return JobResult.failed(job, FileAccessError([Problem(job.source, lost)]))
+    except Exception as error:  # of the executor; the job itself raises none
+        return JobResult.failed(job, error)

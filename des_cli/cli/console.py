@@ -1,0 +1,102 @@
+"""Words for people, on stderr; data never passes through here."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import click
+
+from des_cli.errors import ExitCode
+from des_cli.failure import Failure
+
+if TYPE_CHECKING:
+    from des_cli.model.solution import Iteration
+
+DEBUG_VARIABLE = "DES_CORIOLIS_DEBUG"
+"""In the environment, and not empty: the traceback of a bug is printed."""
+
+QUIET, NORMAL, VERBOSE, DEBUG = -1, 0, 1, 2
+
+_STYLES = {
+    "title": {"bold": True},
+    "good": {"fg": "green"},
+    "warning": {"fg": "yellow"},
+    "error": {"fg": "red"},
+    "faint": {"dim": True},
+    "plain": {},
+}
+
+
+class Console:
+    """How much is said, and whether in color.
+
+    Attributes
+    ----------
+    verbosity : int
+        ``QUIET``, ``NORMAL``, ``VERBOSE`` or ``DEBUG``.
+    color : bool
+    """
+
+    def __init__(self) -> None:
+        self.verbosity = NORMAL
+        self.color = False
+        self._log_open = False
+        self.choose_color("auto")
+
+    def choose_color(self, choice: str) -> None:
+        """Take the value of ``--color``: auto, always or never."""
+        if choice == "auto":
+            # https://no-color.org: set and not empty, whatever the value.
+            wanted = not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+            self.color = wanted and sys.stderr is not None and sys.stderr.isatty()
+        else:
+            self.color = choice == "always"
+
+    def style(self, text: str, style: str) -> str:
+        """Return the text in a style of the table, or as it is without color."""
+        return click.style(text, **_STYLES[style]) if self.color else text  # type: ignore[arg-type]
+
+    def say(self, text: str) -> None:
+        """Print unless quiet."""
+        if self.verbosity > QUIET:
+            click.echo(text, err=True, color=self.color)
+
+    def warn(self, lines: Iterable[str], style: str = "warning") -> None:
+        """Print what nobody may miss, quiet or not."""
+        for line in lines:
+            click.echo(self.style(line, style), err=True, color=self.color)
+
+    def failure(self, failure: Failure) -> None:
+        """Print how something failed; a traceback only when asked for."""
+        lines = failure.lines
+        if failure.exit_code == ExitCode.BUG:
+            if self.verbosity >= DEBUG or os.environ.get(DEBUG_VARIABLE):
+                click.echo(failure.traceback, err=True, nl=False)
+            else:
+                lines = tuple(f"{line} ({DEBUG_VARIABLE}=1 prints where)" for line in lines)
+        self.warn(lines, "error")
+
+    def iteration(self, iteration: Iteration) -> None:
+        """Print one line of a solver's log, under a header before the first one."""
+        if not self._log_open:
+            self.say(self.style(ITERATION_HEADER, "faint"))
+            self._log_open = True
+        self.say(iteration_line(iteration))
+
+    def end_log(self) -> None:
+        """Let the next iteration begin with a header."""
+        self._log_open = False
+
+
+ITERATION_HEADER = "  iter            cost  infeasibility     optimality      step"
+
+
+def iteration_line(iteration: Iteration) -> str:
+    """Return an iteration in the columns of ``ITERATION_HEADER``."""
+    return (
+        f"{iteration.number:6d}  {iteration.cost:14.8g}  {iteration.infeasibility:13.3e}"
+        f"  {iteration.optimality:13.3e}  {iteration.step:8.4f}"
+    )

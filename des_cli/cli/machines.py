@@ -1,0 +1,55 @@
+"""``des-coriolis machines``: the machines that the tool knows, and one as a file."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+from des_cli.cli.options import verbosity_options
+from des_cli.cli.stdout import write_data
+
+
+@click.command(
+    short_help="List the built-in machines, or print one.",
+    epilog="""\b
+Examples:
+  des-coriolis machines
+  des-coriolis machines des > my-machine.yaml
+""",
+)
+@click.argument("machine", metavar="[NAME|FILE]", required=False)
+@click.option(
+    "-f",
+    "--format",
+    "form",
+    type=click.Choice(["text", "json"]),
+    default="text",
+    show_default=True,
+    help="Text is a line a machine, or the YAML of one; json is an object a line.",
+)
+@verbosity_options
+def machines(machine: str | None, form: str) -> None:
+    """List the built-in machines, or print one with its limits, lengths and source.
+
+    What is printed of a machine reads back, from a file of its own or below
+    "machine:" in a profile, to the same machine.
+    """
+    from des_cli.files.machine_file import load_machine, machine_summary, machine_text
+    from des_cli.files.machine_yaml import machine_mapping
+    from des_cli.model.machines import MACHINES
+
+    if machine is not None:
+        shown = load_machine(machine, "NAME")
+        if form == "json":
+            write_data(json.dumps(machine_mapping(shown), ensure_ascii=False) + "\n")
+        else:
+            write_data(machine_text(shown))
+        return
+    known = {name: machine_summary(each) for name, each in MACHINES.items()}
+    if form == "json":
+        rows = [json.dumps({"name": name, "summary": text}) for name, text in known.items()]
+    else:
+        width = max(map(len, known))
+        rows = [f"{name:<{width}}  {text}".rstrip() for name, text in known.items()]
+    write_data("".join(row + "\n" for row in rows))

@@ -1,0 +1,124 @@
+"""The command ``des-coriolis``: parses, dispatches, and ends with an exit code.
+
+The commands live in one module each, imported when it is asked for. Their
+errors come here, and nowhere else in the command line are they turned into an
+exit code.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from importlib import import_module
+from typing import Any, NoReturn
+
+import click
+
+from des_cli import __version__
+from des_cli.cli.console import Console
+from des_cli.cli.options import color_option, verbosity_options
+from des_cli.errors import ExitCode
+from des_cli.failure import Failure
+
+COMMANDS = ("reduce", "report", "validate", "kinematics", "profiles", "machines", "schema")
+"""In the order of ``--help``; each is the module and the command of that name."""
+
+PROGRAM = "des-coriolis"
+
+
+class Program(click.Group):
+    """The group of commands, and the one place where their errors end."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Name the commands in the order of use."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import a command by its name."""
+        if cmd_name not in COMMANDS:
+            return None
+        command = getattr(import_module(f"des_cli.cli.{cmd_name}"), cmd_name)
+        assert isinstance(command, click.Command)
+        return command
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        **extra: Any,
+    ) -> NoReturn:
+        """Run a command line and exit.
+
+        click's own ``main`` is passed by: it ends a broken pipe with 1.
+        """
+        name = prog_name or PROGRAM
+        self._main_shell_completion(extra, name, complete_var)
+        console = Console()
+        try:
+            code = self._dispatch(list(sys.argv[1:] if args is None else args), name, console)
+            # A full disk or a reader that went away shows only now.
+            if sys.stdout is not None:
+                sys.stdout.flush()
+        except click.exceptions.Exit as end:
+            code = end.exit_code
+        except click.ClickException as error:
+            error.show()
+            code = error.exit_code
+        except click.Abort:
+            code = _end(console, KeyboardInterrupt())
+        except (Exception, KeyboardInterrupt) as error:
+            code = _end(console, error)
+        sys.exit(int(code))
+
+    def _dispatch(self, args: list[str], name: str, console: Console) -> int:
+        with self.make_context(name, args, obj=console) as context:
+            code = self.invoke(context)
+        return ExitCode.DONE if code is None else code
+
+
+def _end(console: Console, error: BaseException) -> ExitCode:
+    """Print how an exception ends, and return its exit code."""
+    failure = Failure.of(error)
+    with suppress(OSError):
+        console.failure(failure)
+    if isinstance(error, OSError):
+        _discard_stdout()
+    return failure.exit_code
+
+
+def _discard_stdout() -> None:
+    """Keep the interpreter from flushing, and failing, once more at its exit."""
+    with suppress(OSError, ValueError, AttributeError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+
+
+@click.command(
+    PROGRAM,
+    cls=Program,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="""\b
+Example:
+  des-coriolis reduce cobra
+""",
+)
+@verbosity_options
+@color_option
+@click.version_option(__version__, prog_name=PROGRAM, message="%(prog)s %(version)s")
+def program() -> None:
+    """Reduce the Coriolis that a pilot feels in a three-axis human centrifuge.
+
+    A maneuver profile goes in; a command table for the arm, the fork and the
+    cab comes out, verified, with what it cost. Data goes to stdout, words to
+    stderr; "-" is stdin or stdout.
+    """
+
+
+def main() -> NoReturn:
+    """Run the command line of this process."""
+    program.main()

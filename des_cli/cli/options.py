@@ -1,0 +1,221 @@
+"""Every option that more than one command has, or that maps to a profile's key, once.
+
+A shared option is a decorator; a command picks those that it understands.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from des_cli.cli.console import Console
+from des_cli.errors import FileAccessError, Problem
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+TABLE_FORMATS = ("csv", "ndjson", "json", "parquet")
+"""Formats of the command table; a file's suffix is one of them."""
+
+DEFAULT_RUNS = "runs"
+"""Where runs go, and where ``report`` looks for them."""
+
+
+def verbosity_options(command: F) -> F:
+    """Add ``-q`` and ``-v``, on the group and on every command alike."""
+    quiet = click.option(
+        "-q",
+        "--quiet",
+        is_flag=True,
+        expose_value=False,
+        callback=_on_quiet,
+        help="Print only warnings and errors.",
+    )
+    verbose = click.option(
+        "-v",
+        "--verbose",
+        count=True,
+        expose_value=False,
+        callback=_on_verbose,
+        help="Print a line for each iteration; twice: also the traceback of a bug.",
+    )
+    return quiet(verbose(command))
+
+
+def color_option(command: F) -> F:
+    """Add ``--color``; without it, a terminal without NO_COLOR has colors."""
+    return click.option(
+        "--color",
+        type=click.Choice(["auto", "always", "never"]),
+        default="auto",
+        show_default=True,
+        expose_value=False,
+        callback=_on_color,
+        help="Color the words on stderr; auto respects NO_COLOR.",
+    )(command)
+
+
+def profile_argument(command: F) -> F:
+    """Add ``PROFILE...``."""
+    return click.argument("profiles", metavar="PROFILE...", nargs=-1, required=True)(command)
+
+
+def setting_options(command: F) -> F:
+    """Add ``--set`` and ``--column``, which change how a profile is read."""
+    settings = click.option(
+        "--set",
+        "settings",
+        metavar="KEY=VALUE",
+        multiple=True,
+        callback=_require_assignments,
+        help="Override a key of the profile by its path, such as reduction.r2=0.2; repeatable.",
+    )
+    columns = click.option(
+        "--column",
+        "columns",
+        metavar="NAME=HEADER",
+        multiple=True,
+        callback=_read_columns,
+        help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
+    )
+    return settings(columns(command))
+
+
+# The options that are keys of `reduction:` by name. What a value may be is the
+# schema's business, but for the words that --help lists.
+_REDUCTION: tuple[tuple[str, Any, str], ...] = (
+    ("method", click.Choice(["minimum", "zero"]), "Least Coriolis, or none."),
+    (
+        "algorithm",
+        click.Choice(["optimum", "report-sweep"]),
+        "The true optimum, or the study's single sweep.",
+    ),
+    ("control", click.Choice(["scalar", "per-joint"]), "One factor for all joints, or one each."),
+    (
+        "axes",
+        click.Choice(["report", "seat"]),
+        "Weigh the Coriolis vector in the study's axes or in the seat's.",
+    ),
+    (
+        "jacobian",
+        click.Choice(["desired", "adapted"]),
+        "Where the Jacobian is taken; the study takes the desired motion.",
+    ),
+    ("r1", "WEIGHTS", "Weight on the Coriolis components: 0,2,0 or a 3x3 matrix in brackets."),
+    ("r2", "WEIGHT", "Weight on leaving the desired rates: a number, or one a joint as 1,1,1."),
+    ("tracking", "WEIGHT", "Weight on leaving the desired angles: a number, or one a joint."),
+    (
+        "limits",
+        click.Choice(["enforce", "check", "warn"]),
+        "Solve inside the machine's limits, refuse beyond them, or only name them.",
+    ),
+    (
+        "budget",
+        "MOST",
+        "The most Coriolis reduction for at most this joint_deviation_relative, or METRIC=MOST "
+        "of another fidelity metric, inside the machine's limits.",
+    ),
+    ("tolerance", "RAD_S2", "Largest Coriolis component that --method zero leaves."),
+    ("iterations", click.IntRange(min=1), "Backward-forward sweeps of report-sweep."),
+)
+
+
+def reduction_options(command: F) -> F:
+    """Add an option for each common key of ``reduction:``; see `reduction_settings`."""
+    for key, kind, text in reversed(_REDUCTION):
+        typed: dict[str, Any] = {"metavar": kind} if isinstance(kind, str) else {"type": kind}
+        command = click.option(f"--{key}", key, help=text, **typed)(command)
+    return command
+
+
+def reduction_settings(values: Mapping[str, Any]) -> tuple[str, ...]:
+    """Turn the options of `reduction_options` into settings.
+
+    >>> reduction_settings({"method": "zero", "r1": "0,2,0", "r2": None})
+    ('reduction.method=zero', 'reduction.r1=[0,2,0]')
+    """
+    given = {key: _bracketed(values[key]) for key, _, _ in _REDUCTION if values.get(key) is not None}
+    if "budget" in given:
+        metric, equals, most = given["budget"].partition("=")
+        if equals:
+            given["budget"] = f"{{{metric.strip()}: {most.strip()}}}"
+        # what a budget buys is meant inside the limits, unless it is said otherwise
+        given.setdefault("limits", "enforce")
+    return tuple(f"reduction.{key}={value}" for key, value in given.items())
+
+
+def read_stdin(sources: tuple[str, ...]) -> bytes | None:
+    """Return all of stdin if ``-`` is among the sources.
+
+    Raises
+    ------
+    click.UsageError
+        If it is there twice.
+    FileAccessError
+        If this process was started with a closed stdin.
+    """
+    if "-" not in sources:
+        return None
+    if sources.count("-") > 1:
+        raise click.UsageError("stdin ('-') can be read only once.")
+    if sys.stdin is None:
+        raise FileAccessError([Problem("stdin", "is closed")])
+    return sys.stdin.buffer.read()
+
+
+def existing_folder(path: str) -> bool:
+    """Whether an argument means a folder: it is one, or ends like one."""
+    return path.endswith(("/", os.sep)) or Path(path).is_dir()
+
+
+def _bracketed(value: Any) -> str:
+    """Write ``1,2,3`` as a list; anything else as it is."""
+    text = str(value).strip()
+    return f"[{text}]" if "," in text and not text.startswith("[") else text
+
+
+def _require_assignments(
+    context: click.Context, parameter: click.Parameter, values: tuple[str, ...]
+) -> tuple[str, ...]:
+    for value in values:
+        if not value.partition("=")[0].strip() or "=" not in value:
+            raise click.BadParameter(f"{value!r} is not KEY=VALUE, such as reduction.r2=0.2.")
+    return values
+
+
+def _read_columns(
+    context: click.Context, parameter: click.Parameter, values: tuple[str, ...]
+) -> dict[str, str]:
+    columns: dict[str, str] = {}
+    for value in values:
+        name, equals, header = value.partition("=")
+        if not name or not equals or not header:
+            raise click.BadParameter(f"{value!r} is not NAME=HEADER, such as t_s=t.")
+        if name in columns:
+            raise click.BadParameter(f"{name!r} is given twice.")
+        columns[name] = header
+    return columns
+
+
+def _console(context: click.Context) -> Console:
+    console = context.find_object(Console)
+    assert console is not None
+    return console
+
+
+def _on_quiet(context: click.Context, parameter: click.Parameter, value: bool) -> None:
+    if value:
+        _console(context).verbosity = -1
+
+
+def _on_verbose(context: click.Context, parameter: click.Parameter, value: int) -> None:
+    if value:
+        _console(context).verbosity = value
+
+
+def _on_color(context: click.Context, parameter: click.Parameter, value: str) -> None:
+    _console(context).choose_color(value)

@@ -1,0 +1,164 @@
+"""``des-coriolis reduce``: profiles in, command tables out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, cast
+
+import click
+
+from des_cli.cli.console import VERBOSE, Console
+from des_cli.cli.options import (
+    DEFAULT_RUNS,
+    TABLE_FORMATS,
+    existing_folder,
+    profile_argument,
+    read_stdin,
+    reduction_options,
+    reduction_settings,
+    setting_options,
+    verbosity_options,
+)
+from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
+from des_cli.cli.summary import exit_code_of, print_closing, print_result
+from des_cli.errors import ExitCode
+from des_cli.job import STANDARD_STREAM, Job, TableFormat
+
+
+@click.command(
+    short_help="Reduce the Coriolis of profiles; write command tables.",
+    epilog="""\b
+Examples:
+  des-coriolis reduce cobra
+  des-coriolis reduce my.yaml --control per-joint -o my-run
+  des-coriolis reduce log.csv --column t_s=time -o commands.csv
+  des-coriolis reduce profiles/*.yaml --jobs 4 --keep-going
+""",
+)
+@profile_argument
+@setting_options
+@reduction_options
+@click.option(
+    "-o",
+    "--out",
+    metavar="DIR|FILE|-",
+    help="The run folder (for several profiles: the folder of their run folders), or a file "
+    "of the command table alone, or stdout.  [default: runs/NAME]",
+)
+@click.option(
+    "-f",
+    "--format",
+    "table_format",
+    type=click.Choice(TABLE_FORMATS),
+    help="Format of the command table that -o FILE or -o - writes.  [default: by suffix, or csv]",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=0),
+    default=1,
+    show_default=True,
+    help="Profiles at a time; 0 is one for each CPU.",
+)
+@click.option("--keep-going", is_flag=True, help="Go on with the others after one has failed.")
+@click.option("--resume", is_flag=True, help="Keep finished runs of the very same profile.")
+@click.option("--overwrite", is_flag=True, help="Replace an output that exists.")
+@click.option("--dry-run", is_flag=True, help="Check the profiles and say what would be written.")
+@click.option("--no-plots", is_flag=True, help="Write no plots into the run folder.")
+@verbosity_options
+@click.pass_obj
+def reduce(
+    console: Console,
+    profiles: tuple[str, ...],
+    settings: tuple[str, ...],
+    columns: dict[str, str],
+    out: str | None,
+    table_format: str | None,
+    jobs: int,
+    keep_going: bool,
+    resume: bool,
+    overwrite: bool,
+    dry_run: bool,
+    no_plots: bool,
+    **reduction: Any,
+) -> ExitCode:
+    """Reduce the Coriolis of each PROFILE, and write what the machine is to do.
+
+    A PROFILE is a YAML or CSV file, the name of a built-in profile, or "-" for
+    stdin. Each run is verified by independent code before its command table
+    exists. Options that name a key of the profile's "reduction:" override it,
+    and --set.
+    """
+    form = _table_format(out, table_format, several=len(profiles) > 1)
+    if form is not None and resume:
+        raise click.UsageError("--resume needs run folders: a table does not tell its profile.")
+    if out == STANDARD_STREAM and not dry_run:
+        refuse_binary_on_terminal(form)
+    stdin = read_stdin(profiles)
+    batch = [
+        Job(
+            source=source,
+            settings=(*settings, *reduction_settings(reduction)),
+            columns=columns,
+            stdin=stdin if source == STANDARD_STREAM else None,
+            out=DEFAULT_RUNS if out is None else out,
+            out_is_parent=out is None or len(profiles) > 1,
+            table_format=form,
+            plots=not no_plots,
+            overwrite=overwrite,
+            resume=resume,
+            dry_run=dry_run,
+        )
+        for source in profiles
+    ]
+    return _run(console, batch, min(jobs, len(batch)) if jobs else jobs, keep_going)
+
+
+def _run(console: Console, batch: list[Job], workers: int, keep_going: bool) -> ExitCode:
+    from des_cli.batch import require_distinct_names, run_jobs
+    from des_cli.pool import local_executor
+
+    alone = len(batch) == 1
+    results = []
+    with local_executor(1 if alone else workers) as executor:
+        if not alone:
+            require_distinct_names(batch)
+        live = executor is None and console.verbosity >= VERBOSE
+        on_iteration = console.iteration if live else None
+        for result in run_jobs(batch, executor, keep_going=keep_going, on_iteration=on_iteration):
+            if console.verbosity >= VERBOSE and not live:
+                for iteration in result.log:
+                    console.iteration(iteration)
+            console.end_log()
+            results.append(result)
+            print_result(console, result, alone=alone)
+            if result.table is not None:
+                write_data(result.table)
+    if not alone:
+        print_closing(console, results, len(batch))
+    return exit_code_of(results, len(batch))
+
+
+def _table_format(out: str | None, named: str | None, *, several: bool) -> TableFormat | None:
+    """Return the format of the command table, or None where a run folder is meant."""
+    if out is None:
+        if named is not None:
+            raise click.UsageError(
+                "--format is for a command table: add -o FILE, or -o - for stdout."
+            )
+        return None
+    suffix = Path(out).suffix.lower().removeprefix(".")
+    to_stdout = out == STANDARD_STREAM
+    is_table = to_stdout or suffix in TABLE_FORMATS or named is not None
+    if not to_stdout and existing_folder(out):
+        if named is not None:
+            raise click.UsageError(f"--format is for a command table, and {out} is a folder.")
+        return None
+    if not is_table:
+        return None
+    if several:
+        raise click.UsageError(
+            "one command table cannot hold several profiles: name a folder with -o DIR."
+        )
+    if named is not None and suffix in TABLE_FORMATS and suffix != named:
+        raise click.UsageError(f"--format {named} contradicts the suffix of {out}.")
+    return cast(TableFormat, named or (suffix if suffix in TABLE_FORMATS else "csv"))

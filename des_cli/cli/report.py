@@ -1,0 +1,90 @@
+"""``des-coriolis report``: runs on one page, to compare and to hand on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from des_cli.cli.console import Console
+from des_cli.cli.options import DEFAULT_RUNS, verbosity_options
+from des_cli.cli.stdout import write_data
+from des_cli.errors import DesError, FileAccessError, Problem
+from des_cli.job import STANDARD_STREAM
+
+
+@click.command(
+    short_help="Put runs on one HTML page.",
+    epilog="""\b
+Examples:
+  des-coriolis report
+  des-coriolis report runs/cobra -o cobra.html
+""",
+)
+@click.argument("runs", metavar="[RUN]...", nargs=-1)
+@click.option(
+    "-o",
+    "--out",
+    metavar="FILE|-",
+    default="report.html",
+    show_default=True,
+    help="The page; an earlier one is replaced.",
+)
+@verbosity_options
+@click.pass_obj
+def report(console: Console, runs: tuple[str, ...], out: str) -> None:
+    """Make a single HTML page of each RUN, or of every run under runs/.
+
+    A RUN is a run folder, or a folder of run folders. The page needs no
+    network and no other file.
+    """
+    from des_cli.files.atomic import write_file
+    from des_cli.files.run_folder import StoredRun, read_run
+    from des_cli.report.page import render_report
+
+    stored: list[StoredRun] = []
+    problems: list[Problem] = []
+    for folder in _run_folders(runs or (DEFAULT_RUNS,)):
+        try:
+            stored.append(read_run(folder))
+        except DesError as error:
+            problems += error.problems
+    if problems:
+        raise FileAccessError(problems)
+    page = render_report(stored)
+    if out == STANDARD_STREAM:
+        write_data(page)
+        return
+    write_file(out, page.encode(), overwrite=True)
+    count = "1 run" if len(stored) == 1 else f"{len(stored)} runs"
+    console.say(f"{count} in {console.style(out, 'good')}")
+
+
+def _run_folders(named: tuple[str, ...]) -> list[Path]:
+    """Expand folders of runs; each run once, in the order of naming.
+
+    Raises
+    ------
+    FileAccessError
+        Naming every argument that is no run and holds none.
+    """
+    from des_cli.files.manifest import is_run
+
+    folders: dict[Path, None] = {}
+    problems = []
+    for name in named:
+        folder = Path(name)
+        if is_run(folder):
+            found = [folder]
+        else:
+            inside = sorted(folder.iterdir()) if folder.is_dir() else []
+            found = [path for path in inside if is_run(path)]
+        if not found:
+            what = "holds no run; make one with: des-coriolis reduce cobra"
+            if not folder.exists():
+                what = "does not exist; make a run with: des-coriolis reduce cobra"
+            problems.append(Problem(name, what))
+        folders |= dict.fromkeys(found)
+    if problems:
+        raise FileAccessError(problems)
+    return list(folders)

@@ -1,0 +1,37 @@
+"""Data for programs, on stdout, byte for byte."""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from des_cli.errors import FileAccessError, Problem
+
+
+def write_data(data: bytes | str) -> None:
+    """Write and flush, so that a full disk or a gone reader shows here.
+
+    Raises
+    ------
+    FileAccessError
+        If this process was started with a closed stdout.
+    OSError
+        If the data cannot be written.
+    """
+    if sys.stdout is None:
+        raise FileAccessError([Problem("stdout", "is closed")])
+    stream = sys.stdout.buffer
+    stream.write(data.encode() if isinstance(data, str) else data)
+    stream.flush()
+
+
+def refuse_binary_on_terminal(table_format: str | None) -> None:
+    """Refuse to fill a terminal with bytes that mean nothing to it.
+
+    Raises
+    ------
+    click.UsageError
+    """
+    if table_format == "parquet" and sys.stdout is not None and sys.stdout.isatty():
+        raise click.UsageError("parquet is not for a terminal: redirect stdout, or -o FILE.")

@@ -1,0 +1,1 @@
+"""Everything that touches a file: profiles in, tables and run folders out."""

@@ -1,0 +1,238 @@
+"""Tables of a run: their columns, and the bytes of each format.
+
+A table is a mapping from a column's name, which ends with its unit, to a
+one-dimensional array of doubles. Every format reads back the same doubles, bit
+for bit: the text formats write the shortest decimal that does. The text formats
+need neither pandas nor pyarrow.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+
+from des_cli.errors import NotReleasedError, Problem
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import JOINTS
+from des_cli.model.motion import Motion, mean_of_sides
+from des_cli.model.run import Run
+from des_cli.units import split_unit
+
+TableFormat: TypeAlias = Literal["csv", "ndjson", "json", "parquet"]
+TABLE_FORMATS: tuple[TableFormat, ...] = get_args(TableFormat)
+
+SEAT_PARTS = ("tangential", "centripetal", "coriolis")
+"""Names of ``Response.seat_parts`` along its third axis."""
+
+# Rows turned into text at a time: keeps the Python floats of a long table from
+# being alive all at once.
+_ROWS_AT_ONCE = 65_536
+
+
+def command_columns(run: Run) -> dict[str, Floats]:
+    """Return the command table of the modified motion.
+
+    Parameters
+    ----------
+    run : Run
+
+    Returns
+    -------
+    dict of str to (n,) array
+        ``t_s``, ``arm_rpm`` (a velocity command; at a step of the rate the mean
+        of both sides), ``fork_deg``, ``cab_deg`` (position commands).
+    """
+    motion = run.solution.modified
+    return {
+        "t_s": motion.t,
+        "arm_rpm": _in_unit("arm_rpm", motion.rate[:, 0]),
+        "fork_deg": _in_unit("fork_deg", motion.angle[:, 1]),
+        "cab_deg": _in_unit("cab_deg", motion.angle[:, 2]),
+    }
+
+
+def trajectory_columns(run: Run) -> dict[str, Floats]:
+    """Return everything that is known at each sample.
+
+    A quantity that steps at a sample is given as the mean of both sides.
+
+    Parameters
+    ----------
+    run : Run
+
+    Returns
+    -------
+    dict of str to (n,) array
+        Desired and modified joint motion, the factor ``p`` (or ``p_arm``,
+        ``p_fork``, ``p_cab``), the adjoint, the Coriolis vector in report and
+        in seat axes, the G-vector at the seat, and the split of the seat's
+        linear acceleration; ``before`` belongs to the desired motion and
+        ``after`` to the modified one. ``docs/formats.md`` lists the columns.
+    """
+    before, after = run.before, run.after
+    blocks = [
+        run.solution.modified.t[:, None],
+        *_motion_blocks(run.desired),
+        *_motion_blocks(run.solution.modified),
+        run.solution.control,
+        run.solution.adjoint,
+        _interleaved(before.coriolis_report, after.coriolis_report),
+        _interleaved(before.coriolis_seat, after.coriolis_seat),
+        _interleaved(before.seat_g, after.seat_g),
+        *(
+            _interleaved(before.seat_parts[:, :, part], after.seat_parts[:, :, part])
+            for part in range(len(SEAT_PARTS))
+        ),
+    ]
+    names = trajectory_names(run.solution.control.shape[1])
+    vectors = (block[:, i] for block in blocks for i in range(block.shape[1]))
+    return dict(zip(names, vectors, strict=True))
+
+
+def trajectory_names(joints_of_p: int) -> tuple[str, ...]:
+    """Return the names of ``trajectory_columns``, in their order.
+
+    Parameters
+    ----------
+    joints_of_p : int
+        1 for a factor p that all joints share, 3 for one per joint.
+    """
+    vectors = [
+        *((f"coriolis_{name}", "rad_s2") for name in ("ab3", "bb3", "cb3")),
+        *((f"coriolis_seat_{axis}", "rad_s2") for axis in "xyz"),
+        *((f"seat_g{axis}", "g") for axis in "xyz"),
+        *((f"seat_{part}_{axis}", "g") for part in SEAT_PARTS for axis in "xyz"),
+    ]
+    return (
+        "t_s",
+        *(
+            f"{which}_{joint}_{unit}"
+            for which in ("desired", "modified")
+            for joint in JOINTS
+            for unit in ("rad", "rad_s", "rad_s2")
+        ),
+        *(["p"] if joints_of_p == 1 else [f"p_{joint}" for joint in JOINTS]),
+        *(f"adjoint_{joint}" for joint in JOINTS),
+        *(f"{stem}_{when}_{unit}" for stem, unit in vectors for when in ("before", "after")),
+    )
+
+
+def encode_table(columns: Mapping[str, Floats], format: TableFormat) -> bytes:
+    """Return a table in the bytes of a format.
+
+    Parameters
+    ----------
+    columns : mapping of str to (n,) array
+    format : {"csv", "ndjson", "json", "parquet"}
+        ``csv`` starts with the header row and has no comment lines; ``ndjson``
+        is an object a line; ``json`` an array of those objects, a line each.
+
+    Raises
+    ------
+    NotReleasedError
+        If a value is not a finite number: such a table must not be played.
+    ValueError
+        If the columns are not equally long vectors, or the format is none of
+        the above.
+    """
+    if len({np.shape(values) for values in columns.values()}) != 1 or any(
+        np.ndim(values) != 1 for values in columns.values()
+    ):
+        raise ValueError("columns of a table must be vectors of one length")
+    _require_finite(columns)
+    match format:
+        case "csv":
+            return _csv(columns)
+        case "ndjson":
+            return "".join(line + "\n" for line in _objects(columns)).encode()
+        case "json":
+            return ("[\n" + ",\n".join(_objects(columns)) + "\n]\n").encode()
+        case "parquet":
+            return _parquet(columns)
+    raise ValueError(f"unknown table format {format!r}: one of {', '.join(TABLE_FORMATS)}")
+
+
+def _in_unit(name: str, si: Floats) -> Floats:
+    """Turn SI values into the unit that the column's name ends with."""
+    unit = split_unit(name)[1]
+    assert unit is not None, name
+    return si / unit.to_si
+
+
+def _motion_blocks(motion: Motion) -> list[Floats]:
+    """Return angle, rate and acceleration at samples, an (n, 3) array a joint."""
+    interval = motion.acceleration
+    acceleration = mean_of_sides(np.stack([interval, interval], axis=1))
+    return [
+        np.stack([motion.angle[:, joint], motion.rate[:, joint], acceleration[:, joint]], axis=1)
+        for joint in range(len(JOINTS))
+    ]
+
+
+def _interleaved(before: Floats, after: Floats) -> Floats:
+    """Turn two (n - 1, 2, 3) arrays into (n, 6): each component before and after."""
+    pairs = np.stack([mean_of_sides(before), mean_of_sides(after)], axis=2)
+    return pairs.reshape(len(pairs), -1)
+
+
+def _require_finite(columns: Mapping[str, Floats]) -> None:
+    problems = []
+    for name, values in columns.items():
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size:
+            what = (
+                f"{bad.size} of {len(values)} values are not finite numbers, the first "
+                f"({values[bad[0]]}) in row {bad[0] + 1}; no table is written"
+            )
+            problems.append(Problem(name, what))
+    if problems:
+        raise NotReleasedError(problems)
+
+
+def _text_columns(columns: Mapping[str, Floats]) -> Iterator[Sequence[list[str]]]:
+    """Yield blocks of rows: for each column the shortest exact text of its values."""
+    arrays = [np.asarray(values, dtype=np.float64) for values in columns.values()]
+    for start in range(0, len(arrays[0]), _ROWS_AT_ONCE):
+        block = slice(start, start + _ROWS_AT_ONCE)
+        yield [[float.__repr__(value) for value in array[block].tolist()] for array in arrays]
+
+
+def _csv(columns: Mapping[str, Floats]) -> bytes:
+    blocks = [",".join(columns).encode() + b"\n"]
+    for texts in _text_columns(columns):
+        rows = "\n".join(map(",".join, zip(*texts, strict=True)))
+        blocks.append(rows.encode("ascii") + b"\n")
+    return b"".join(blocks)
+
+
+def _objects(columns: Mapping[str, Floats]) -> Iterator[str]:
+    """Yield a row at a time as a JSON object on one line."""
+    keys = [json.dumps(name).replace("%", "%%") for name in columns]
+    template = "{" + ", ".join(f"{key}: %s" for key in keys) + "}"
+    for texts in _text_columns(columns):
+        yield from (template % row for row in zip(*texts, strict=True))
+
+
+def _parquet(columns: Mapping[str, Floats]) -> bytes:
+    # Imported here: it costs a tenth of a second that a CSV table does not need.
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    # From buffers, because pa.array would import pandas to ask whether it was given any.
+    arrays: list[Any] = [
+        pa.Array.from_buffers(
+            pa.float64(),
+            len(values),
+            [None, pa.py_buffer(np.ascontiguousarray(values, np.float64))],
+        )
+        for values in columns.values()
+    ]
+    table = pa.Table.from_arrays(arrays, names=list(columns))
+    sink = pa.BufferOutputStream()
+    # Snappy is what every reader knows; a dictionary of doubles that never
+    # repeat only adds bytes.
+    pq.write_table(table, sink, compression="snappy", use_dictionary=False, store_schema=False)
+    return bytes(sink.getvalue())

@@ -1,0 +1,224 @@
+"""Which figures there are, and what each of them shows.
+
+Every figure is a function of the columns of ``trajectory.parquet`` and of the
+content of ``metrics.json``; ``before`` belongs to the desired motion and
+``after`` to the modified one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import JOINTS
+from des_cli.plots.canvas import (
+    AFTER,
+    BEFORE,
+    DASHES,
+    DESIRED,
+    GREY,
+    JOINT_PENS,
+    MODIFIED,
+    Pen,
+    draw,
+    png,
+    set_span,
+    sheet,
+    style,
+)
+from des_cli.plots.weighted import reduction_of, weighted_component
+from des_cli.units import split_unit
+
+Columns: TypeAlias = Mapping[str, Floats]
+Metrics: TypeAlias = Mapping[str, Any]
+
+CAPTIONS: Mapping[str, str] = {
+    "commands": "What the machine is commanded: the arm's rate, the angles of fork and cab.",
+    "coriolis": "The Coriolis component that the weight looks at, and the whole vector.",
+    "coriolis_components": (
+        "All components on one scale: along the inertial axes of the study (left) and along "
+        "the axes of the seat, which the pilot feels (right)."
+    ),
+    "factor": "The factor p on the joint rates; 1 leaves the desired motion as it is.",
+    "adjoint": "The adjoint of the joint angles: what a change of each angle would cost.",
+    "deviation": "How far the modified joint angles are from the desired ones.",
+    "seat_g": "The G-vector at the seat, gravity included, along the seat's axes.",
+}
+"""A sentence for each figure, in the order of a report."""
+
+# Ordinates are at least this high, whatever the noise: a thousandth of what
+# the machine does in earnest.
+_FLOOR = {"rpm": 0.01, "deg": 0.01, "rad/s²": 2e-3, "p": 0.02, "g": 2e-3}
+_LEAST_SHARE = 1e-3
+_NO_ADJOINT = 1e-12
+
+_COMPONENT_LABELS = {
+    "ab3": "AB3",
+    "bb3": "BB3",
+    "cb3": "CB3",
+    "seat_x": "seat x",
+    "seat_y": "seat y",
+    "seat_z": "seat z",
+}
+
+
+def draw_plots(trajectory: Columns, metrics: Metrics) -> dict[str, bytes]:
+    """Draw all figures of a run.
+
+    Parameters
+    ----------
+    trajectory : mapping of str to (n,) array
+        The columns of ``trajectory.parquet``.
+    metrics : mapping
+        The content of ``metrics.json``.
+
+    Returns
+    -------
+    dict of str to bytes
+        The PNG of each figure by its name, in the order of ``CAPTIONS``. The
+        same input gives the same bytes.
+    """
+    figures: dict[str, Callable[[Columns, Metrics], tuple[Figure, str]]] = {
+        "commands": _commands,
+        "coriolis": _coriolis,
+        "coriolis_components": _coriolis_components,
+        "factor": _factor,
+        "adjoint": _adjoint,
+        "deviation": _deviation,
+        "seat_g": _seat_g,
+    }
+    with style():
+        return {
+            name: png(*draw_figure(trajectory, metrics)) for name, draw_figure in figures.items()
+        }
+
+
+def _commands(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
+    title = "Joint commands"
+    figure, axes = sheet(title, [DESIRED, MODIFIED], 3)
+    commands = (
+        ("arm_rad_s", "arm_rpm", "arm [rpm]"),
+        ("fork_rad", "fork_deg", "fork [deg]"),
+        ("cab_rad", "cab_deg", "cab [deg]"),
+    )
+    for (panel,), (column, shown, label) in zip(axes, commands, strict=True):
+        unit = split_unit(shown)[1]
+        assert unit is not None
+        curves = [
+            (DESIRED, columns[f"desired_{column}"] / unit.to_si),
+            (MODIFIED, columns[f"modified_{column}"] / unit.to_si),
+        ]
+        draw(panel, columns["t_s"], curves, label, _FLOOR[unit.suffix])
+    return figure, title
+
+
+def _coriolis(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
+    component = _shown_component(columns, metrics)
+    label = _COMPONENT_LABELS[component]
+    study = " (study Fig. 7, 10)" if component == "bb3" else ""
+    title = f"Coriolis {label}{study} and the whole vector"
+    figure, axes = sheet(title, [BEFORE, AFTER], 2, height=2.0)
+    t = columns["t_s"]
+    draw(axes[0][0], t, _before_after(columns, component), f"{label} [rad/s²]", _FLOOR["rad/s²"])
+    norms = [(pen, _norm(columns, pen.label)) for pen in (BEFORE, AFTER)]
+    draw(axes[1][0], t, norms, "norm ‖c‖ [rad/s²]", _FLOOR["rad/s²"])
+    for panel, key in ((axes[0][0], component), (axes[1][0], "vector")):
+        _note(panel, _share_taken_off(metrics, key))
+    return figure, title
+
+
+def _coriolis_components(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
+    title = "Coriolis by component: study's axes and seat's axes"
+    figure, axes = sheet(title, [BEFORE, AFTER], 3, 2, same_scale=True)
+    for j, keys in enumerate((("ab3", "bb3", "cb3"), ("seat_x", "seat_y", "seat_z"))):
+        for i, key in enumerate(keys):
+            label = f"{_COMPONENT_LABELS[key]} [rad/s²]"
+            draw(axes[i][j], columns["t_s"], _before_after(columns, key), label, _FLOOR["rad/s²"])
+            _note(axes[i][j], _share_taken_off(metrics, key))
+    together = [values for name, values in columns.items() if name.startswith("coriolis_")]
+    set_span(axes[0][0], together, _FLOOR["rad/s²"])
+    return figure, title
+
+
+def _factor(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
+    title = "Factor p on the joint rates (study Fig. 9)"
+    one = Pen("desired, p = 1", GREY, DASHES, 1.3, 2.5)
+    if "p" in columns:
+        factors = [(Pen("p", MODIFIED.color), columns["p"])]
+    else:
+        factors = [
+            (pen, columns[f"p_{joint}"]) for pen, joint in zip(JOINT_PENS, JOINTS, strict=True)
+        ]
+    curves = [(one, np.ones_like(columns["t_s"])), *factors]
+    figure, axes = sheet(title, [pen for pen, _ in curves], 1, height=2.6)
+    draw(axes[0][0], columns["t_s"], curves, "p [–]", _FLOOR["p"])
+    return figure, title
+
+
+def _adjoint(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
+    title = "Adjoint λ of the joint angles (study Fig. 8: fork)"
+    figure, axes = sheet(title, [], 3)
+    adjoint = [columns[f"adjoint_{joint}"] for joint in JOINTS]
+    # Its scale is that of the weights: what is small is small beside the largest.
+    spread = float(np.ptp(adjoint))
+    floor = _LEAST_SHARE * spread if spread > _NO_ADJOINT else 1.0
+    for (panel,), joint, index, values in zip(axes, JOINTS, "₁₂₃", adjoint, strict=True):
+        draw(panel, columns["t_s"], [(MODIFIED, values)], f"λ{index} {joint} [s/rad]", floor)
+    return figure, title
+
+
+def _deviation(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
+    title = "Joint deviation θ − Θ"
+    figure, axes = sheet(title, [], 3)
+    for (panel,), joint in zip(axes, JOINTS, strict=True):
+        deviation = np.degrees(columns[f"modified_{joint}_rad"] - columns[f"desired_{joint}_rad"])
+        draw(panel, columns["t_s"], [(MODIFIED, deviation)], f"{joint} [deg]", _FLOOR["deg"])
+    return figure, title
+
+
+def _seat_g(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
+    title = "G-vector at the seat"
+    figure, axes = sheet(title, [DESIRED, MODIFIED], 3)
+    for (panel,), axis in zip(axes, "xyz", strict=True):
+        curves = [
+            (DESIRED, columns[f"seat_g{axis}_before_g"]),
+            (MODIFIED, columns[f"seat_g{axis}_after_g"]),
+        ]
+        draw(panel, columns["t_s"], curves, f"G{axis} [g]", _FLOOR["g"])
+    return figure, title
+
+
+def _before_after(columns: Columns, component: str) -> list[tuple[Pen, Floats]]:
+    stem = f"coriolis_{component}"
+    return [(pen, columns[f"{stem}_{pen.label}_rad_s2"]) for pen in (BEFORE, AFTER)]
+
+
+def _norm(columns: Columns, when: str) -> Floats:
+    parts = [columns[f"coriolis_{name}_{when}_rad_s2"] for name in ("ab3", "bb3", "cb3")]
+    return np.sqrt(np.sum(np.square(parts), axis=0))
+
+
+def _shown_component(columns: Columns, metrics: Metrics) -> str:
+    """Return the component that the weight looks at, else the one that is largest before."""
+    weighted = weighted_component(metrics)
+    if weighted is not None:
+        return weighted
+    keys = ("seat_x", "seat_y", "seat_z")
+    return max(keys, key=lambda key: float(np.ptp(columns[f"coriolis_{key}_before_rad_s2"])))
+
+
+def _share_taken_off(metrics: Metrics, key: str) -> str:
+    """Say how much of the squared integral of a component is gone, or was added."""
+    reduction = reduction_of(metrics, key)
+    if reduction is None:
+        return ""
+    sign = "−" if reduction >= 0 else "+"
+    return f"squared integral {sign}{100 * abs(reduction):.1f} %"
+
+
+def _note(panel: Any, words: str) -> None:
+    panel.set_title(words, loc="right", fontsize=8, color="#5A5A5A", pad=3)

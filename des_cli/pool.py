@@ -1,0 +1,74 @@
+"""Processes of this machine to run jobs in, with one BLAS thread each."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import get_context
+
+# One name for each BLAS that numpy and scipy are built with.
+_THREAD_VARIABLES = (
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "BLIS_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+)
+
+
+@contextmanager
+def local_executor(workers: int) -> Iterator[Executor | None]:
+    """Offer a pool of processes on this machine, or None where one worker is enough.
+
+    Parameters
+    ----------
+    workers : int
+        0 takes as many as there are CPUs that this process may use.
+    """
+    count = workers or available_cpus()
+    with single_blas_thread():
+        if count <= 1:
+            yield None
+            return
+        # Not forked: numpy's threads do not survive a fork. The initializer
+        # lets Ctrl-C, which reaches every process of the terminal, end a
+        # worker without a traceback.
+        pool = ProcessPoolExecutor(count, get_context("spawn"), initializer=_die_on_interrupt)
+        try:
+            yield pool
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _die_on_interrupt() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@contextmanager
+def single_blas_thread() -> Iterator[None]:
+    """Let BLAS use one thread, here if numpy is not imported yet, and in new processes.
+
+    The number of threads changes the last bits of a result; with one thread
+    everywhere, ``--jobs`` does not. The systems are banded and small, so that
+    nothing is lost by it.
+    """
+    before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
+    os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def available_cpus() -> int:
+    """Return how many CPUs this process may use, which can be fewer than there are."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,122 @@
+"""What a run did, in sentences that name the price beside the gain."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from des_cli.plots.weighted import weighted_component
+from des_cli.report.comparison import limits_cell
+from des_cli.report.numbers import lookup, number, percent, plain, words
+
+COMPONENTS: Mapping[str, str] = {
+    "bb3": "BB3",
+    "ab3": "AB3",
+    "cb3": "CB3",
+    "vector": "the whole vector",
+    "seat_x": "seat x",
+    "seat_y": "seat y",
+    "seat_z": "seat z",
+}
+
+# A component that grows by less is rounding, or noise in a component that
+# hardly exists.
+_WORTH_A_WORD = 0.005
+
+
+def summary_sentences(metrics: Mapping[str, Any]) -> list[str]:
+    """Return the summary of a run.
+
+    Parameters
+    ----------
+    metrics : mapping
+        The content of ``metrics.json``.
+
+    Returns
+    -------
+    list of str
+        The gain and its cost; what got worse; what is wrong; what a simpler
+        way would have cost. What is not known is left out.
+    """
+    sentences = [_gain(metrics), _felt(metrics), _moved(metrics), _wrong(metrics)]
+    return [sentence for sentence in [*sentences, *_baselines(metrics)] if sentence]
+
+
+def _gain(metrics: Mapping[str, Any]) -> str:
+    weighted = weighted_component(metrics)
+    keys = [weighted, "vector"] if weighted else ["vector", "seat_x", "seat_y", "seat_z"]
+    reductions = {key: number(metrics, f"coriolis.{key}.reduction") for key in keys}
+    taken = [
+        f"{percent(value)} off {COMPONENTS[key]}"
+        for key, value in reductions.items()
+        if value is not None and value >= 0
+    ]
+    cost = percent(number(metrics, "fidelity.joint_deviation_relative"))
+    squared = percent(number(metrics, "fidelity.joint_deviation_relative_squared"))
+    price = f"{cost} joint deviation ({squared} squared)"
+    if not taken:
+        return f"Took nothing off the Coriolis, at {price}."
+    return f"Took {_listed(taken)} for {price}."
+
+
+def _felt(metrics: Mapping[str, Any]) -> str:
+    rate = number(metrics, "fidelity.seat_rate_deviation_relative")
+    force = number(metrics, "fidelity.seat_g_deviation_relative")
+    error = number(metrics, "fidelity.seat_g_rms_error_g")
+    if rate is None or force is None:
+        return ""
+    rms = f" ({plain(error, 3)} g rms)" if error is not None else ""
+    return (
+        f"What the pilot feels of it: the seat's angular rate is off by {percent(rate)}, "
+        f"its G-vector by {percent(force)}{rms}."
+    )
+
+
+def _moved(metrics: Mapping[str, Any]) -> str:
+    grown = []
+    for key, name in COMPONENTS.items():
+        reduction = number(metrics, f"coriolis.{key}.reduction")
+        if reduction is not None and reduction < -_WORTH_A_WORD:
+            grown.append(f"{name} by {percent(-reduction)}")
+    if not grown:
+        return ""
+    return f"It was partly moved, not removed: the squared integral grew for {_listed(grown)}."
+
+
+def _wrong(metrics: Mapping[str, Any]) -> str:
+    parts = []
+    if lookup(metrics, "solver.converged") is False:
+        parts.append(f"The solver did not converge ({words(lookup(metrics, 'solver.status'))}).")
+    limits = limits_cell(metrics)
+    if limits.mark == "bad":
+        parts.append(f"The modified motion breaks limits of the machine; {limits.text}.")
+    return " ".join(parts)
+
+
+def _baselines(metrics: Mapping[str, Any]) -> list[str]:
+    sentences = []
+    p = number(metrics, "baseline.constant_p.p")
+    cost = number(metrics, "baseline.constant_p.joint_deviation_relative")
+    if p is not None and cost is not None:
+        sentences.append(
+            f"A constant p = {plain(p, 3)} reaches the same reduction at {percent(cost)} "
+            "joint deviation."
+        )
+    reduction = number(metrics, "baseline.report_sweep.reduction")
+    cost = number(metrics, "baseline.report_sweep.joint_deviation_relative")
+    if reduction is not None and cost is not None:
+        sentences.append(
+            f"The study's single sweep {'takes' if reduction >= 0 else 'adds'} "
+            f"{percent(abs(reduction))} {'off' if reduction >= 0 else 'to'} what is weighed, "
+            f"at {percent(cost)} joint deviation."
+        )
+    return sentences
+
+
+def _listed(parts: Sequence[str]) -> str:
+    """Join parts as a sentence does.
+
+    >>> _listed(["a"]), _listed(["a", "b"]), _listed(["a", "b", "c"])
+    ('a', 'a and b', 'a, b and c')
+    """
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)

@@ -1,0 +1,336 @@
+"""``reduce``: destinations, formats, options, batches, and how each ends."""
+
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+RUN_FILES = {"commands.csv", "trajectory.parquet", "metrics.json", "manifest.json"}
+HEADER = "t_s,arm_rpm,fork_deg,cab_deg"
+
+
+def csv_rows(text: str) -> np.ndarray:
+    header, _, body = text.partition("\n")
+    assert header == HEADER
+    return np.loadtxt(io.StringIO(body), delimiter=",")
+
+
+def metrics_of(folder: Path) -> dict:
+    return json.loads((folder / "metrics.json").read_text())
+
+
+def test_default_is_a_run_folder_named_after_the_profile(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", small)
+    assert (result.exit_code, result.stdout) == (0, "")
+    folder = tmp_path / "runs" / "small"
+    assert {path.name for path in folder.iterdir()} == RUN_FILES | {"plots"}
+    assert list((folder / "plots").glob("*.png"))
+    assert "small: converged in" in result.stderr
+    assert "runs/small" in result.stderr
+    assert csv_rows((folder / "commands.csv").read_text()).shape == (21, 4)
+
+
+def test_summary_names_gain_and_cost(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", small, "--no-plots")
+    metrics = metrics_of(tmp_path / "runs" / "small")
+    gained = 100 * metrics["coriolis"]["bb3"]["reduction"]
+    assert f"BB3 {gained:.1f} % less" in result.stderr
+    for label in ("Coriolis", "deviation", "felt", "compare", "limits", "written"):
+        assert f"\n  {label}" in result.stderr
+
+
+def test_no_plots(invoke, small: str, tmp_path) -> None:
+    assert invoke("reduce", small, "--no-plots", "-o", "here").exit_code == 0
+    assert {path.name for path in (tmp_path / "here").iterdir()} == RUN_FILES
+
+
+def test_out_is_the_folder_itself_for_one_profile(invoke, small: str, tmp_path) -> None:
+    assert invoke("reduce", small, "--no-plots", "-o", "a/b").exit_code == 0
+    assert (tmp_path / "a" / "b" / "manifest.json").is_file()
+
+
+def test_a_table_on_stdout_and_words_on_stderr(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", small, "-o", "-")
+    assert result.exit_code == 0
+    rows = csv_rows(result.stdout)
+    assert rows.shape == (21, 4)
+    assert rows[0, 0] == 0
+    assert rows[-1, 0] == 1
+    assert "small: converged" in result.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {small}
+
+
+def test_every_format_holds_the_same_numbers(invoke, small: str, tmp_path) -> None:
+    for form in ("csv", "json", "ndjson", "parquet"):
+        assert invoke("reduce", small, "-o", f"x.{form}").exit_code == 0
+    rows = csv_rows((tmp_path / "x.csv").read_text())
+    as_json = json.loads((tmp_path / "x.json").read_text())
+    as_lines = [json.loads(line) for line in (tmp_path / "x.ndjson").read_text().splitlines()]
+    assert as_json == as_lines
+    assert list(as_json[0]) == HEADER.split(",")
+    np.testing.assert_array_equal([list(row.values()) for row in as_json], rows)
+    table = pq.read_table(tmp_path / "x.parquet")
+    np.testing.assert_array_equal(np.column_stack([table[c] for c in HEADER.split(",")]), rows)
+
+
+def test_format_by_name(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", small, "-o", "-", "-f", "ndjson")
+    assert json.loads(result.stdout.splitlines()[0])["t_s"] == 0
+    assert invoke("reduce", small, "-o", "x.txt", "-f", "csv").exit_code == 0
+    assert csv_rows((tmp_path / "x.txt").read_text()).shape == (21, 4)
+
+
+def test_stdin_is_a_profile(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", "-", "-o", "-", input=(tmp_path / small).read_bytes())
+    assert result.exit_code == 0
+    assert result.stdout == invoke("reduce", small, "-o", "-").stdout
+
+
+def test_a_built_in_profile_by_name(invoke) -> None:
+    result = invoke("reduce", "cobra", "--set", "time.step_s=0.25", "-o", "-")
+    assert result.exit_code == 0
+    assert csv_rows(result.stdout).shape == (41, 4)
+
+
+def test_a_command_table_is_itself_a_profile(invoke, small: str) -> None:
+    assert invoke("reduce", small, "-o", "x.csv").exit_code == 0
+    result = invoke("reduce", "x.csv", "--limits", "warn", "-o", "-")
+    assert result.exit_code == 0, result.stderr
+    assert csv_rows(result.stdout).shape == (21, 4)
+
+
+def test_column_renames_a_header(invoke, small: str, tmp_path) -> None:
+    text = invoke("reduce", small, "-o", "-").stdout
+    (tmp_path / "log.csv").write_text(text.replace("t_s,", "clock,", 1))
+    assert invoke("reduce", "log.csv", "-o", "-").exit_code == 3
+    args = ("--limits", "warn", "-o", "-")
+    assert invoke("reduce", "log.csv", "--column", "t_s=clock", *args).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("args", "key", "value"),
+    [
+        (["--set", "reduction.control=per-joint"], "control", "per-joint"),
+        (["--control", "per-joint"], "control", "per-joint"),
+        (["--algorithm", "report-sweep"], "algorithm", "report-sweep"),
+        (["--axes", "seat"], "axes", "seat"),
+        (["--jacobian", "adapted"], "jacobian", "adapted"),
+        (["--method", "zero", "--control", "per-joint"], "method", "zero"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else None,
+)
+def test_options_reach_the_solver(invoke, small: str, tmp_path, args, key, value) -> None:
+    result = invoke("reduce", small, "--no-plots", *args)
+    assert result.exit_code == 0, result.stderr
+    assert metrics_of(tmp_path / "runs" / "small")["solver"][key] == value
+
+
+@pytest.mark.parametrize(
+    ("args", "same"),
+    [
+        (["--r1", "0,4,0"], ["--set", "reduction.r1=[0,4,0]"]),
+        (["--r2", "1,1,1"], ["--r2", "1"]),
+        (["--tracking", "0.5"], ["--set", "reduction.tracking=0.5"]),
+        (["--set", "reduction.r2=7", "--r2", "2"], ["--r2", "2"]),
+    ],
+    ids=" ".join,
+)
+def test_weights_by_name_are_those_of_the_profile(invoke, small, args, same) -> None:
+    named = invoke("reduce", small, "-o", "-", *args)
+    assert named.exit_code == 0, named.stderr
+    assert named.stdout == invoke("reduce", small, "-o", "-", *same).stdout
+    changed = args != ["--r2", "1,1,1"]
+    assert (named.stdout != invoke("reduce", small, "-o", "-").stdout) is changed
+
+
+def test_more_sweeps_change_the_motion(invoke, small: str) -> None:
+    sweep = ("reduce", small, "-o", "-", "--algorithm", "report-sweep", "--iterations")
+    assert invoke(*sweep, "1").stdout != invoke(*sweep, "2").stdout
+
+
+def test_verbose_prints_a_line_for_each_iteration(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", small, "--no-plots", "-v")
+    lines = result.stderr.splitlines()
+    assert lines[0].split() == ["iter", "cost", "infeasibility", "optimality", "step"]
+    log = [line.split() for line in lines[1:] if line.split()[0].isdecimal()]
+    solver = metrics_of(tmp_path / "runs" / "small")["solver"]
+    assert len(log) >= solver["iterations"] > 0
+    assert all(len(line) == 5 for line in log)
+    assert float(log[-1][1]) == pytest.approx(solver["cost"], rel=1e-6)
+
+
+def test_quiet_says_nothing_of_a_clean_run(invoke, small: str) -> None:
+    result = invoke("-q", "reduce", small, "-o", "x.csv")
+    assert (result.exit_code, result.stdout, result.stderr) == (0, "", "")
+
+
+def test_every_violation_is_named_even_when_quiet(invoke, write_profile, tmp_path) -> None:
+    fast = write_profile("fast", arm_rpm='"8.8 + 20*t"').name
+    result = invoke("-q", "reduce", fast, "--no-plots")
+    assert result.exit_code == 0
+    assert "desired arm acceleration" in result.stderr
+    limits = metrics_of(tmp_path / "runs" / "fast")["limits"]
+    assert limits["desired"]["arm"]["ok"] is False
+
+
+def test_check_refuses_a_motion_beyond_the_limits(invoke, write_profile, tmp_path) -> None:
+    fast = write_profile("fast", arm_rpm='"8.8 + 20*t"').name
+    for out in ("x.csv", "folder"):
+        result = invoke("reduce", fast, "--limits", "check", "-o", out)
+        assert result.exit_code == 5
+        assert "exceeds the limit" in result.stderr
+        assert not (tmp_path / out).exists()
+
+
+def test_no_solution_is_4_and_leaves_no_table(invoke, small: str, tmp_path) -> None:
+    args = ("--set", "reduction.max_iterations=1", "--r2", "0.01")
+    for out in ("x.csv", "folder", "-"):
+        result = invoke("reduce", small, *args, "-o", out)
+        assert (result.exit_code, result.stdout) == (4, "")
+        assert result.stderr.startswith("small: ")
+        assert {path.name for path in tmp_path.iterdir()} == {small}
+
+
+def test_a_rejected_profile_is_3_with_every_problem(invoke, write_profile, tmp_path) -> None:
+    bad = write_profile("bad", fork_deg="sin(", machine="dse").name
+    result = invoke("reduce", bad)
+    assert (result.exit_code, result.stdout) == (3, "")
+    assert len(result.stderr.splitlines()) == 2
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_failed_overwrite_leaves_no_older_table(invoke, small: str, tmp_path) -> None:
+    broken = ("--set", "reduction.max_iterations=1", "--r2", "0.01", "--overwrite")
+    for out in ("x.csv", "folder"):
+        assert invoke("reduce", small, "--no-plots", "-o", out).exit_code == 0
+        result = invoke("reduce", small, *broken, "-o", out)
+        assert result.exit_code == 4
+        assert f"withdrew the earlier {out}" in result.stderr
+        assert not (tmp_path / "x.csv").exists()
+        assert not list(tmp_path.glob("folder/*.*"))
+
+
+def test_an_existing_output_is_refused_before_solving(invoke, small: str, tmp_path) -> None:
+    for out in ("x.csv", "folder"):
+        assert invoke("reduce", small, "--no-plots", "-o", out).exit_code == 0
+        target = tmp_path / out
+        before = (target if target.is_file() else target / "commands.csv").read_bytes()
+        result = invoke("reduce", small, "-v", "--r2", "8", "-o", out)
+        assert result.exit_code == 1
+        assert "--overwrite" in result.stderr
+        assert "iter" not in result.stderr
+        after = (target if target.is_file() else target / "commands.csv").read_bytes()
+        assert before == after
+        again = ("reduce", small, "--no-plots", "--r2", "8", "-o", out, "--overwrite")
+        assert invoke(*again).exit_code == 0
+        replaced = (target if target.is_file() else target / "commands.csv").read_bytes()
+        assert replaced != before
+
+
+def test_a_missing_folder_of_a_table_is_refused_before_solving(invoke, small: str) -> None:
+    result = invoke("reduce", small, "-v", "-o", "no/x.csv")
+    assert result.exit_code == 1
+    assert result.stderr.count("\n") == 1
+
+
+def test_dry_run_writes_nothing(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", small, "--dry-run")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert "would be reduced into runs/small" in result.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {small}
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (["-f", "json"], "add -o FILE"),
+        (["-o", "x.csv", "-f", "json"], "contradicts"),
+        (["-o", ".", "-f", "json"], "is a folder"),
+        (["-o", "x.csv", "--resume"], "--resume needs run folders"),
+        (["other.yaml", "-o", "x.csv"], "several profiles"),
+        (["other.yaml", "-o", "-"], "several profiles"),
+        (["--set", "reduction.r2"], "KEY=VALUE"),
+        (["--set", "=1"], "KEY=VALUE"),
+        (["--column", "t_s"], "NAME=HEADER"),
+        (["--column", "t_s=a", "--column", "t_s=b"], "given twice"),
+        (["--jobs", "-1"], "--jobs"),
+        (["--iterations", "0"], "--iterations"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else None,
+)
+def test_wrong_use_is_2(invoke, small: str, args: list[str], words: str) -> None:
+    result = invoke("reduce", small, *args)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert words in result.stderr
+
+
+def test_several_profiles_have_a_folder_each(invoke, write_profile, tmp_path) -> None:
+    files = [write_profile(name).name for name in ("one", "two")]
+    result = invoke("reduce", *files, "--no-plots", "-o", "all")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert {path.name for path in (tmp_path / "all").iterdir()} == {"one", "two"}
+    assert result.stderr.splitlines()[-1] == "2 profiles: 2 done"
+
+
+def test_a_batch_stops_at_the_first_failure(invoke, write_profile, tmp_path) -> None:
+    files = [write_profile("bad", fork_deg="sin(").name, write_profile("good").name]
+    result = invoke("reduce", *files, "--no-plots")
+    assert result.exit_code == 1
+    assert "1 failed, 1 not run (--keep-going" in result.stderr
+    assert not (tmp_path / "runs" / "good").exists()
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_keep_going_runs_the_others(invoke, write_profile, tmp_path, jobs: str) -> None:
+    names = ("first", "bad", "last")
+    files = [write_profile(name, **{"fork_deg": "sin("} if name == "bad" else {}) for name in names]
+    args = [path.name for path in files]
+    result = invoke("reduce", *args, "--no-plots", "--keep-going", "--jobs", jobs)
+    assert result.exit_code == 1
+    lines = result.stderr.splitlines()
+    assert [line.split()[0].partition(":")[0] for line in lines[:3]] == [
+        "first",
+        "bad.yaml",
+        "last",
+    ]
+    assert lines[-1] == "3 profiles: 2 done, 1 failed"
+    assert {path.name for path in (tmp_path / "runs").iterdir()} == {"first", "last"}
+
+
+def test_the_number_of_jobs_does_not_change_a_byte(command, write_profile, tmp_path) -> None:
+    files = [write_profile(name).name for name in ("one", "two")]
+    for jobs in ("1", "2"):
+        done = command("reduce", *files, "--no-plots", "--jobs", jobs, "-o", f"by{jobs}")
+        assert done.returncode == 0, done.stderr
+    for name in ("one", "two"):
+        for file in RUN_FILES:
+            single = (tmp_path / "by1" / name / file).read_bytes()
+            assert single == (tmp_path / "by2" / name / file).read_bytes()
+
+
+def test_two_profiles_of_one_name_are_refused_before_anything_runs(
+    invoke, write_profile, tmp_path
+) -> None:
+    first = write_profile("same")
+    (tmp_path / "copy.yaml").write_bytes(first.read_bytes())
+    result = invoke("reduce", first.name, "copy.yaml", "--keep-going")
+    assert result.exit_code == 2
+    assert "same.yaml, copy.yaml" in result.stderr
+    assert not (tmp_path / "runs").exists()
+
+
+def test_resume_keeps_a_finished_run_and_refuses_another(invoke, write_profile, tmp_path) -> None:
+    files = [write_profile(name).name for name in ("one", "two")]
+    assert invoke("reduce", files[0], "--no-plots").exit_code == 0
+    table = tmp_path / "runs" / "one" / "commands.csv"
+    before = table.stat().st_mtime_ns
+    result = invoke("reduce", *files, "--no-plots", "--resume")
+    assert result.exit_code == 0
+    assert result.stderr.splitlines()[-1] == "2 profiles: 1 done, 1 already done"
+    assert table.stat().st_mtime_ns == before
+    result = invoke("reduce", files[0], "--no-plots", "--resume", "--r2", "8")
+    assert result.exit_code == 1
+    assert "very same profile" in result.stderr or "of this very profile" in result.stderr

@@ -1,0 +1,174 @@
+"""Jobs are data, and run the same wherever an Executor takes them."""
+
+import os
+import pickle
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from des_cli import batch
+from des_cli.batch import require_distinct_names, run_job, run_jobs
+from des_cli.errors import ExitCode, ProfileError, UsageError
+from des_cli.job import Job, JobResult
+from des_cli.pool import available_cpus, local_executor, single_blas_thread
+
+COARSE = ("time.step_s=0.25",)
+
+
+def test_a_job_and_its_result_cross_process_boundaries(tmp_path: Path) -> None:
+    out = str(tmp_path / "x.csv")
+    job = Job("cobra", settings=COARSE, out=out, out_is_parent=False, table_format="csv")
+    result = run_job(pickle.loads(pickle.dumps(job)))
+    assert (result.exit_code, result.name, result.state) == (0, "cobra", "reduced")
+    assert pickle.loads(pickle.dumps(result)) == result
+
+
+def test_result_carries_what_a_person_needs(tmp_path: Path) -> None:
+    result = run_job(
+        Job("cobra", settings=COARSE, out="-", out_is_parent=False, table_format="csv")
+    )
+    assert result.table is not None
+    assert result.table.startswith(b"t_s,arm_rpm,fork_deg,cab_deg\n")
+    assert result.objective == ("bb3",)
+    assert result.metrics is not None
+    assert result.log
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_rejected_profile_is_a_result_and_not_an_exception() -> None:
+    result = run_job(Job("cobra", settings=("time.step_s=-1",)))
+    assert (result.exit_code, result.state) == (ExitCode.PROFILE, "failed")
+    assert result.problems
+
+
+def test_a_bug_is_a_result_with_a_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(job: Job) -> None:
+        raise ZeroDivisionError("by nought")
+
+    monkeypatch.setattr(batch, "load_job", broken)
+    result = run_job(Job("cobra"))
+    assert result.exit_code == ExitCode.BUG
+    assert "ZeroDivisionError" in result.traceback
+
+
+@pytest.fixture
+def pretend(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Jobs that only tell that they ran; those called bad fail."""
+    ran: list[str] = []
+
+    def run(job: Job, on_iteration: Callable[..., None] | None = None) -> JobResult:
+        ran.append(job.source)
+        if job.source == "bad":
+            return JobResult.failed(job, ProfileError.of("bad"))
+        return JobResult(job.source, job.source)
+
+    monkeypatch.setattr(batch, "run_job", run)
+    return ran
+
+
+JOBS = [Job("a"), Job("bad"), Job("b"), Job("c")]
+
+
+@pytest.mark.parametrize("threads", [0, 1, 3])
+def test_results_come_in_the_order_of_the_jobs(pretend: list[str], threads: int) -> None:
+    if not threads:
+        results = list(run_jobs(JOBS, keep_going=True))
+    else:
+        with ThreadPoolExecutor(threads) as executor:
+            results = list(run_jobs(JOBS, executor, keep_going=True))
+    assert [result.source for result in results] == ["a", "bad", "b", "c"]
+    assert [result.exit_code for result in results] == [0, 3, 0, 0]
+
+
+def test_without_a_pool_nothing_runs_after_a_failure(pretend: list[str]) -> None:
+    results = list(run_jobs(JOBS))
+    assert [result.source for result in results] == pretend == ["a", "bad"]
+
+
+def test_with_a_pool_what_had_begun_is_told_and_nothing_else_begins(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    begun, go_on = threading.Event(), threading.Event()
+
+    def run(job: Job, on_iteration: Callable[..., None] | None = None) -> JobResult:
+        if job.source == "bad":
+            assert begun.wait(30)
+            return JobResult.failed(job, ProfileError.of("bad"))
+        begun.set()
+        assert go_on.wait(30)
+        return JobResult(job.source, job.source)
+
+    monkeypatch.setattr(batch, "run_job", run)
+    with ThreadPoolExecutor(2) as executor:
+        jobs = [Job("bad"), Job("b"), *(Job(f"c{i}") for i in range(50))]
+        results = []
+        for result in run_jobs(jobs, executor):
+            results.append(result.source)
+            go_on.set()
+    # The thread of the failed job may have taken up one more meanwhile, which
+    # then waits; no other can begin before the rest is cancelled.
+    assert results in (["bad", "b"], ["bad", "b", "c0"])
+
+
+def test_a_worker_that_dies_fails_its_job() -> None:
+    with local_executor(2) as executor:
+        assert executor is not None
+        future = executor.submit(os._exit, 9)
+        result = batch._result_of(Job("cobra"), future)  # type: ignore[arg-type]
+    assert result.exit_code == ExitCode.FILE
+    assert "worker process died" in result.problems[0]
+
+
+def test_one_worker_needs_no_pool() -> None:
+    with local_executor(1) as executor:
+        assert executor is None
+
+
+def test_workers_have_one_blas_thread_each() -> None:
+    with local_executor(2) as executor:
+        assert executor is not None
+        names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+        assert [executor.submit(os.getenv, name).result() for name in names] == ["1"] * 3
+
+
+def test_the_number_of_threads_is_put_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
+    with single_blas_thread():
+        assert os.environ["OMP_NUM_THREADS"] == os.environ["MKL_NUM_THREADS"] == "1"
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "MKL_NUM_THREADS" not in os.environ
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="no affinity on this system")
+def test_cpus_are_counted_by_affinity() -> None:
+    before = os.sched_getaffinity(0)
+    try:
+        os.sched_setaffinity(0, {min(before)})
+        assert available_cpus() == 1
+    finally:
+        os.sched_setaffinity(0, before)
+    assert available_cpus() == len(before)
+
+
+def test_names_that_occur_twice_are_refused_together() -> None:
+    with pytest.raises(UsageError) as caught:
+        require_distinct_names([Job("cobra"), Job("nowhere.yaml"), Job("cobra", settings=COARSE)])
+    assert [problem.where for problem in caught.value.problems] == ["cobra"]
+    require_distinct_names([Job("cobra"), Job("nowhere.yaml")])
+
+
+def test_a_dask_client_is_one_more_executor() -> None:
+    distributed = pytest.importorskip("distributed")
+    jobs = [
+        Job(source, COARSE, out="-", out_is_parent=False, table_format="csv")
+        for source in ("cobra", "nowhere.yaml", "cobra_table3")
+    ]
+    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.Client(processes=False, **options) as client:
+        results = list(run_jobs(jobs, client.get_executor(), keep_going=True))
+    assert results == list(run_jobs(jobs, keep_going=True))
+    assert [result.exit_code for result in results] == [0, 1, 0]

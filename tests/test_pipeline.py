@@ -1,0 +1,168 @@
+"""From a profile to a run, and what stands against releasing it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from des_cli.errors import ExitCode, NoSolutionError, NotReleasedError, UsageError
+from des_cli.model.machines import DES
+from des_cli.model.profile import BodyRates, JointCommands, Profile, Reduction
+from des_cli.model.run import Check
+from des_cli.pipeline import reduce_profile
+
+STUDY = Reduction(
+    control="scalar", axes="report", r1=np.diag([0.0, 2.0, 0.0]), limits="warn", budget=()
+)
+
+
+def cobra(intervals=250, **reduction):
+    """The Cobra of (34)-(37) with the study's weights; its cab's rate steps at 5 s."""
+    t = np.linspace(0.0, 10.0, intervals + 1)
+    s = t - 5.0
+    fork = -np.pi / 3.0 * (1.0 - np.cos(np.pi * t / 5.0))
+    fork_rate = -np.pi / 3.0 * np.pi / 5.0 * np.sin(np.pi * t / 5.0)
+    cab_rate = np.radians(2.5) * np.where(s[:-1] < -1e-9, -1.0, 1.0)
+    command = JointCommands(
+        arm_rate=(5.5 + 0.66 * np.abs(s)) * 2.0 * np.pi / 60.0,
+        position=np.stack([fork, np.radians(17.5 + 2.5 * np.abs(s))], axis=1),
+        rate_start=np.stack([fork_rate[:-1], cab_rate], axis=1),
+        rate_end=np.stack([fork_rate[1:], cab_rate], axis=1),
+    )
+    return Profile("cobra", t, command, DES, reduction=replace(STUDY, **reduction))
+
+
+@pytest.fixture(scope="module")
+def run():
+    return reduce_profile(cobra())
+
+
+def test_the_studys_problem_from_end_to_end(run):
+    assert run.solution.cost == pytest.approx(0.259055, abs=2e-6)
+    assert run.metrics["coriolis"]["bb3"]["reduction"] == pytest.approx(0.689, abs=5e-4)
+    assert run.metrics["baseline"]["report_sweep"]["reduction"] == pytest.approx(0.639, abs=1e-3)
+    assert all(check.ok for check in run.checks)
+    run.require_release()
+
+
+def test_responses_belong_to_the_motions(run):
+    rms = [
+        np.sqrt(np.mean(response.coriolis_report[..., 1] ** 2))
+        for response in (run.before, run.after)
+    ]
+    found = run.metrics["coriolis"]["bb3"]
+    assert rms == pytest.approx([found["rms_before_rad_s2"], found["rms_after_rad_s2"]], rel=1e-3)
+
+
+def test_iterations_are_reported_as_they_come():
+    heard = []
+    run = reduce_profile(cobra(100), on_iteration=heard.append)
+    assert tuple(heard) == run.solution.log
+    assert len(heard) > 3
+
+
+def test_the_studys_law_does_not_claim_the_optimum():
+    run = reduce_profile(cobra(algorithm="report-sweep"))
+    assert run.metrics["coriolis"]["bb3"]["reduction"] == pytest.approx(0.639, abs=1e-3)
+    assert not any("optimum" in check.name for check in run.checks)
+    run.require_release()
+
+
+def test_a_solver_that_did_not_converge_is_not_released():
+    run = reduce_profile(cobra(r2=np.full(3, 0.05), max_iterations=2))
+    with pytest.raises(NoSolutionError) as caught:
+        run.require_release()
+    assert caught.value.exit_code == ExitCode.NO_SOLUTION
+    (problem,) = caught.value.problems
+    assert problem.where == "cobra"
+    assert problem.what.startswith("iteration-limit: ")
+    assert "max_iterations" in problem.what
+
+
+def test_violations_name_both_motions(run):
+    named = {(v.motion, v.joint, v.quantity) for v in run.violations}
+    assert ("desired", "cab", "rate step") in named
+    assert ("modified", "cab", "rate step") in named
+
+
+def test_limits_under_check_are_all_named_at_once():
+    run = reduce_profile(cobra(limits="check"))
+    broken = [str(v) for v in run.violations if v.motion == "modified"]
+    assert broken
+    with pytest.raises(NotReleasedError) as caught:
+        run.require_release()
+    assert caught.value.exit_code == ExitCode.NOT_RELEASED
+    assert [problem.what for problem in caught.value.problems] == broken
+    assert all(problem.where == "cobra" for problem in caught.value.problems)
+
+
+def test_limits_under_enforce_are_kept():
+    run = reduce_profile(cobra(limits="enforce", control="per-joint"))
+    assert run.solution.converged
+    assert [v for v in run.violations if v.motion == "modified"] == []
+    assert np.abs(run.solution.modified.rate_step).max() == 0.0
+    assert run.metrics["limits"]["modified"]["cab"]["ok"] is True
+    run.require_release()
+
+
+def test_a_failed_verification_is_not_released_whatever_the_limits_say(run):
+    checks = (*run.checks, Check("gap of something", 2e-3, 1e-9), Check("count", np.nan, 0.0))
+    with pytest.raises(NotReleasedError) as caught:
+        replace(run, checks=checks).require_release()
+    first, second = caught.value.problems
+    assert "verification failed: gap of something is 0.002, tolerance 1e-09" in first.what
+    assert "count is nan" in second.what
+
+
+def test_a_bought_component_is_noticed():
+    # All the weight on the seat's y, little on the factors: CB3 pays.
+    run = reduce_profile(cobra(axes="seat", r2=np.full(3, 0.01), control="per-joint"))
+    grown = [
+        name
+        for name in ("ab3", "bb3", "cb3", "seat_x", "seat_y", "seat_z")
+        if run.metrics["coriolis"][name]["reduction"] < -0.05
+    ]
+    assert grown
+    (notice,) = [notice for notice in run.notices if "bought" in notice]
+    assert all(name in notice for name in grown)
+
+
+def test_nothing_bought_nothing_noticed(run):
+    assert not any("bought" in notice for notice in run.notices)
+
+
+def test_a_damped_inverse_is_noticed_with_its_time_span():
+    t = np.linspace(0.0, 2.0, 81)
+    rates = BodyRates(*[np.tile([0.0, 0.5, 0.1], (80, 1))] * 3)
+    profile = Profile(
+        "loop", t, rates, DES, initial_angle=np.array([0.0, 1.35, 0.0]), reduction=STUDY
+    )
+    run = reduce_profile(profile)
+    (notice,) = [notice for notice in run.notices if "damped" in notice]
+    times = run.asked.motion.t[run.asked.damped]
+    assert f"{times[0]:g}" in notice
+    assert f"{times[-1]:g} s" in notice
+
+
+def test_the_same_profile_gives_the_same_metrics():
+    first, second = (reduce_profile(cobra(100)) for _ in range(2))
+    assert first.metrics == second.metrics
+
+
+def test_per_joint_is_never_above_the_scalar():
+    scalar, joints = (reduce_profile(cobra(control=c)) for c in ("scalar", "per-joint"))
+    assert joints.solution.cost <= scalar.solution.cost
+
+
+def test_what_excludes_something_else_is_refused_all_at_once():
+    with pytest.raises(UsageError) as caught:
+        reduce_profile(cobra(algorithm="report-sweep", limits="enforce", hold=frozenset({"arm"})))
+    assert caught.value.exit_code == ExitCode.USAGE
+    whats = [problem.what for problem in caught.value.problems]
+    assert len(whats) == 2
+    assert "--limits warn" in whats[0]
+    assert "per-joint" in whats[1]
+    with pytest.raises(UsageError, match="r1"):
+        reduce_profile(cobra(r1=np.zeros((3, 3))))

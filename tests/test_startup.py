@@ -1,0 +1,71 @@
+"""Start-up is lean: what a command does not need, it does not import."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+# Runs the command line in a fresh interpreter and prints, as the last line of
+# stderr, which of the watched modules it imported.
+WATCH = """
+import sys
+from des_cli.cli.main import main
+try:
+    main()
+finally:
+    watched = {watched!r}
+    print("imported:", *sorted(watched & set(sys.modules)), file=sys.stderr)
+"""
+
+
+def imported(watched: set[str], *args: str, cwd: Path, env: dict[str, str]) -> set[str]:
+    done = subprocess.run(
+        [sys.executable, "-c", WATCH.format(watched=watched), *args],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        env=env,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    label, *names = done.stderr.splitlines()[-1].split()
+    assert label == "imported:"
+    return set(names)
+
+
+@pytest.mark.parametrize(
+    "args",
+    [
+        ["--help"],
+        ["--version"],
+        ["reduce", "--help"],
+        ["report", "--help"],
+        ["validate", "--help"],
+        ["profiles", "--help"],
+        ["kinematics", "--help"],
+        ["machines", "--help"],
+        ["schema", "--help"],
+    ],
+    ids=" ".join,
+)
+def test_help_leaves_numpy_unimported(
+    args: list[str], tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    heavy = {"numpy", "scipy", "pandas", "pyarrow", "matplotlib", "pydantic", "ruamel.yaml"}
+    assert imported(heavy, *args, cwd=tmp_path, env=python_environment) == set()
+
+
+def test_package_leaves_numpy_unimported(python_environment: dict[str, str]) -> None:
+    code = "import sys, des_cli; sys.exit('numpy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], env=python_environment, check=False)
+    assert done.returncode == 0
+
+
+def test_a_csv_table_leaves_pandas_and_matplotlib_unimported(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    watched = {"numpy", "pandas", "matplotlib", "pyarrow", "scipy.integrate"}
+    args = ["reduce", "cobra", "--set", "time.step_s=0.25", "-o", "x.csv"]
+    assert imported(watched, *args, cwd=tmp_path, env=python_environment) == {"numpy"}
+    assert (tmp_path / "x.csv").read_text().startswith("t_s,arm_rpm,fork_deg,cab_deg\n")
