@@ -132,6 +132,7 @@ def _run_job(job: Job, on_iteration: Callable[[Iteration], None] | None) -> JobR
     try:
         profile = load_job(job)
         name = profile.name
+        _require_consistent(profile)
         target = job.destination(name)
         if job.resume and _holds_run_of(target, profile):
             return JobResult(job.source, name, written=str(target), state="kept")
@@ -143,6 +144,13 @@ def _run_job(job: Job, on_iteration: Callable[[Iteration], None] | None) -> JobR
         raise
     except Exception as error:
         return JobResult.failed(job, error, name)
+
+
+def _require_consistent(profile: Profile) -> None:
+    """Refuse contradictions also where nothing will be solved."""
+    from des_cli.pipeline import require_consistent
+
+    require_consistent(profile.reduction, profile.name)
 
 
 def _reduce_and_write(

@@ -38,7 +38,7 @@ class Measured:
 
 
 def measure(run: Measured) -> dict[str, Any]:
-    """Return the metrics of a run, as they stand in ``metrics.json``."""
+    """Return the metrics of a run, as they stand in ``metrics.json`` beside the notices."""
     return {
         "profile": _profile(run.profile),
         "solver": _solver(run.profile, run.solution),
@@ -64,6 +64,7 @@ def measure(run: Measured) -> dict[str, Any]:
             )
         },
         "singularity": _singularity(run),
+        "violations": [str(violation) for violation in run.violations],
     }
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -12,21 +11,15 @@ from des_cli.errors import UsageError
 from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond
 from des_cli.metrics import Measured, measure
-from des_cli.model.motion import DesiredMotion
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.run import Run
 from des_cli.model.solution import Iteration
+from des_cli.notices import find_notices
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.limits import find_violations
 from des_cli.reduction.problem import pose_problem
 from des_cli.reduction.solve import make_executable, not_attempted, solve
 from des_cli.reduction.verify import verify
-
-BOUGHT = 0.05
-"""Relative growth of a Coriolis component's energy that is worth a sentence."""
-
-NOTICEABLE = 1e-3
-"""Change of a desired angle [rad] by the limits that is worth a sentence."""
 
 
 def reduce_profile(
@@ -52,7 +45,7 @@ def reduce_profile(
         If the reduction asks for things that exclude each other.
     """
     wanted = profile.reduction
-    require_consistent(wanted)
+    require_consistent(wanted, profile.name)
     asked = make_desired(profile)
     desired, trouble = asked.motion, ""
     if wanted.limits == "enforce":
@@ -71,6 +64,7 @@ def reduce_profile(
         profile, asked, desired, solution, before, after, violations, compare(problem, solution)
     )
     metrics = measure(measured)
+    metrics["notices"] = find_notices(asked, metrics)
     return Run(
         profile=profile,
         asked=asked,
@@ -81,12 +75,18 @@ def reduce_profile(
         checks=verify(posed, solution, wanted),
         violations=violations,
         metrics=metrics,
-        notices=tuple(_notices(asked, metrics)),
+        notices=tuple(metrics["notices"]),
     )
 
 
-def require_consistent(wanted: Reduction) -> None:
+def require_consistent(wanted: Reduction, name: str = "") -> None:
     """Refuse what a method cannot do.
+
+    Parameters
+    ----------
+    wanted : Reduction
+    name : str, optional
+        Of the profile that asks for it.
 
     Raises
     ------
@@ -120,34 +120,5 @@ def require_consistent(wanted: Reduction) -> None:
         if wrong
     ]
     if findings:
-        raise UsageError([Finding("reduction", what) for what in findings])
-
-
-def _notices(asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
-    """Return what the user should know beside the numbers."""
-    notices = []
-    if np.any(asked.damped):
-        times = asked.motion.t[asked.damped]
-        largest = float(np.max(np.linalg.norm(asked.residual, axis=1)))
-        notices.append(
-            f"the inverse was damped or a joint rate held at its limit at {len(times)} samples "
-            f"between t = {times[0]:g} and {times[-1]:g} s; "
-            f"the seat rate is off by up to {largest:.3g} rad/s there"
-        )
-    change = metrics["executable"]["joint_change_max_rad"]
-    moved = [f"{joint} {value:.3g} rad" for joint, value in change.items() if value > NOTICEABLE]
-    if moved:
-        notices.append(
-            "the desired motion breaks limits; it was replaced by the nearest one inside them, "
-            f"changed by up to {', '.join(moved)}"
-        )
-    grown = [
-        f"{name} grew by {-100 * part['reduction']:.0f} %"
-        for name, part in metrics["coriolis"].items()
-        if part["reduction"] is not None and part["reduction"] < -BOUGHT
-    ]
-    if grown and metrics["solver"]["status"] in ("converged", "acceptable"):
-        notices.append(f"one component was bought with another: {', '.join(grown)}")
-    if metrics["solver"]["status"] == "acceptable":
-        notices.append(f"acceptable, not converged: {metrics['solver']['message']}")
-    return notices
+        where = f"{name}: reduction" if name else "reduction"
+        raise UsageError([Finding(where, what) for what in findings])

@@ -84,12 +84,19 @@ def synthetic_run() -> Callable[..., Run]:
                 t=t,
                 command=commands,
                 machine=Machine("des", (), LIMITS),
-                reduction=Reduction(axes="report", r1=np.diag([0.0, 2.0, 0.0])),
+                reduction=Reduction(
+                    control="per-joint" if per_joint else "scalar",
+                    axes="report",
+                    r1=np.diag([0.0, 2.0, 0.0]),
+                    limits="warn",
+                    budget=(),
+                ),
                 sha256="5c" * 32,
             ),
-            desired=DesiredMotion(
+            asked=DesiredMotion(
                 desired, np.ones(samples), np.zeros(samples, dtype=bool), np.zeros((samples, 3))
             ),
+            desired=desired,
             solution=Solution(
                 status="converged",
                 message=solver["message"],
@@ -178,6 +185,7 @@ def _metrics(name: str, control: str, before: Response, after: Response) -> dict
     for i, axis in enumerate("xyz"):
         seat = (before.coriolis_seat[..., i], after.coriolis_seat[..., i])
         coriolis[f"seat_{axis}"] = _component(*seat)
+    coriolis["objective"] = {"reduction": coriolis["bb3"]["reduction"]}
     return {
         "profile": {"name": name, "sha256": "5c" * 32, "samples": 1001, "duration_s": 10.0},
         "solver": {
@@ -187,6 +195,10 @@ def _metrics(name: str, control: str, before: Response, after: Response) -> dict
             "axes": "report",
             "jacobian": "desired",
             "r1": [[0.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 0.0]],
+            "r2": [1.0, 1.0, 1.0],
+            "tracking": [0.0, 0.0, 0.0],
+            "limits": "warn",
+            "budget": None,
             "status": "converged",
             "converged": True,
             "iterations": 6,
@@ -217,13 +229,22 @@ def _metrics(name: str, control: str, before: Response, after: Response) -> dict
                 for axis in ("gx", "gy", "gz")
             },
         },
+        "executable": {
+            "replaced": False,
+            "joint_change_relative": 0.0,
+            "joint_change_max_rad": {"arm": 0.0, "fork": 0.0, "cab": 0.0},
+        },
         "baseline": {
             "report_sweep": {"reduction": 0.639, "joint_deviation_relative": 0.24},
             "constant_p": {"p": 0.747, "joint_deviation_relative": 0.253},
         },
         "singularity": {
             "min_abs_cos_fork": 0.0021,
+            "min_singular_value": 0.0015,
             "damped_samples": 0,
             "max_residual_rad_s": 0.0,
+            "integration_error_max_deg": 0.0,
         },
+        "violations": [],
+        "notices": [],
     }

@@ -189,7 +189,7 @@ def test_54_has_the_wrong_sign_on_the_deviation() -> None:
     """L' = -H_theta with (Theta - theta)' Q (Theta - theta) / 2 in H gives + (Theta - theta)' Q."""
     weight = 0.3
     run = optimal(1, f"reduction.tracking={weight}", "time.step_s=0.01")
-    modified, desired = run.solution.modified, run.desired.motion
+    modified, desired = run.solution.modified, run.desired
     c, by_angle, _ = coriolis_derivatives(CHAIN, modified.angle, modified.rate, "report")
     coriolis_part = -R1 * c[:, 1, None] * by_angle[:, 1]
     deviation_part = weight * (desired.angle - modified.angle)
@@ -208,7 +208,7 @@ def test_54_has_the_wrong_sign_on_the_deviation() -> None:
 def test_the_law_drops_the_derivative_in_p_and_is_not_the_optimum() -> None:
     """(T26) holds at the optimum, (47) does not; and the sweep costs more."""
     run = optimal(1, "time.step_s=0.01")
-    p, phi = run.solution.control[:, 0], run.desired.motion.rate
+    p, phi = run.solution.control[:, 0], run.desired.rate
     g = coriolis(CHAIN, run.solution.modified.angle, phi, "report")[:, 1]
     power = np.sum(run.solution.adjoint * phi, axis=1)
     inside = slice(1, -1)

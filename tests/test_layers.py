@@ -13,9 +13,9 @@ LAYERS = (
     ("model",),
     ("kinematics",),
     ("reduction",),
-    ("metrics", "pipeline"),
+    ("metrics", "notices", "pipeline", "tradeoff"),
     ("files", "plots", "report"),
-    ("failure", "job", "pool", "batch"),
+    ("failure", "job", "pool", "batch", "sweep"),
     ("cli", "__main__"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}

@@ -41,6 +41,7 @@ def imported(watched: set[str], *args: str, cwd: Path, env: dict[str, str]) -> s
         ["--version"],
         ["reduce", "--help"],
         ["report", "--help"],
+        ["sweep", "--help"],
         ["validate", "--help"],
         ["profiles", "--help"],
         ["kinematics", "--help"],

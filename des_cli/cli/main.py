@@ -22,7 +22,7 @@ from des_cli.cli.options import color_option, verbosity_options
 from des_cli.errors import ExitCode
 from des_cli.failure import Failure
 
-COMMANDS = ("reduce", "report", "validate", "kinematics", "profiles", "machines", "schema")
+COMMANDS = ("reduce", "report", "sweep", "validate", "kinematics", "profiles", "machines", "schema")
 """In the order of ``--help``; each is the module and the command of that name."""
 
 PROGRAM = "des-coriolis"

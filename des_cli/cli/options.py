@@ -126,20 +126,40 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
 
 def reduction_options(command: F) -> F:
     """Add an option for each common key of ``reduction:``; see `reduction_settings`."""
-    for key, kind, text in reversed(_REDUCTION):
-        typed: dict[str, Any] = {"metavar": kind} if isinstance(kind, str) else {"type": kind}
-        command = click.option(f"--{key}", key, help=text, **typed)(command)
-    return command
+    return reduction_options_without()(command)
+
+
+def reduction_options_without(*keys: str) -> Callable[[F], F]:
+    """Return a decorator that adds the options of `reduction_options` but for some keys."""
+
+    def add(command: F) -> F:
+        for key, kind, text in reversed(_REDUCTION):
+            if key in keys:
+                continue
+            typed: dict[str, Any] = {"metavar": kind} if isinstance(kind, str) else {"type": kind}
+            command = click.option(f"--{key}", key, help=text, **typed)(command)
+        return command
+
+    return add
 
 
 def reduction_settings(values: Mapping[str, Any]) -> tuple[str, ...]:
     """Turn the options of `reduction_options` into settings.
 
+    Raises
+    ------
+    click.UsageError
+        If a budget is given together with the weights that it stands instead of.
+
     >>> reduction_settings({"method": "zero", "r1": "0,2,0", "r2": None})
     ('reduction.method=zero', 'reduction.r1=[0,2,0]')
     """
-    given = {key: _bracketed(values[key]) for key, _, _ in _REDUCTION if values.get(key) is not None}
+    given = {
+        key: _bracketed(values[key]) for key, _, _ in _REDUCTION if values.get(key) is not None
+    }
     if "budget" in given:
+        if weights := [f"--{key}" for key in ("r2", "tracking") if key in given]:
+            raise click.UsageError(f"--budget stands instead of {' and '.join(weights)}.")
         metric, equals, most = given["budget"].partition("=")
         if equals:
             given["budget"] = f"{{{metric.strip()}: {most.strip()}}}"

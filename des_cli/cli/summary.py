@@ -51,8 +51,8 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
         console.say(_short_line(console, result))
     label = f"  {'limits':<{_LABEL_WIDTH}} "
     console.warn(label + line for line in result.violations)
-    if not result.violations and alone:
-        console.say(label + "all kept")
+    if alone and not any(line.startswith("modified") for line in result.violations):
+        console.say(label + ("kept by the modified motion" if result.violations else "all kept"))
     for notice in result.notices:
         console.say(console.style(f"  {'notice':<{_LABEL_WIDTH}} {notice}", "warning"))
     if alone and result.table is None:
@@ -101,6 +101,8 @@ def summary_rows(result: JobResult) -> list[tuple[str, str]]:
             f"({number(fidelity['seat_g_rms_error_g'])} g rms)",
         ),
     ]
+    for metric, most in (metrics["solver"].get("budget") or {}).items():
+        rows.append(("budget", f"{metric} at most {number(most)}, is {fidelity[metric]:.4g}"))
     texts = _baselines(metrics.get("baseline") or {})
     return rows + [("compare" if not i else "", text) for i, text in enumerate(texts)]
 
@@ -171,7 +173,8 @@ def _headline(console: Console, result: JobResult) -> str:
         f"{solver['method']} Coriolis by {solver['algorithm']}, "
         f"{solver['control']} control, {solver['axes']} axes"
     )
-    status = console.style(f"{solver['status']} in {steps}", "good")
+    look = "good" if solver["status"] == "converged" else "warning"
+    status = console.style(f"{solver['status']} in {steps}", look)
     return f"{console.style(result.name, 'title')}: {status} ({how})"
 
 

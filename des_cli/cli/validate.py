@@ -58,9 +58,11 @@ def validate(
     """Check each PROFILE without reducing it, and name all of its problems.
 
     Prints a line for each good profile on stdout. The exit code is 3 if a
-    profile is rejected, 1 if a file cannot be read.
+    profile is rejected, 2 if its reduction asks for what excludes each other,
+    1 if a file cannot be read.
     """
     from des_cli.batch import load_job
+    from des_cli.pipeline import require_consistent
 
     stdin = read_stdin(profiles)
     codes = set()
@@ -73,6 +75,7 @@ def validate(
         )
         try:
             profile = load_job(job)
+            require_consistent(profile.reduction, profile.name)
         except (DesError, OSError) as error:
             failure = Failure.of(error)
             codes.add(failure.exit_code)
@@ -103,6 +106,7 @@ def understood(source: str, profile: Profile) -> dict[str, Any]:
         "algorithm": reduction.algorithm,
         "control": reduction.control,
         "axes": reduction.axes,
+        "budget": dict(reduction.budget) or None,
         "limits": reduction.limits,
         "sha256": profile.sha256,
     }
@@ -118,5 +122,8 @@ def _line(facts: dict[str, Any]) -> str:
         f"{facts['source']}: ok: {facts['name']}, {kind}, {facts['samples']} samples, "
         f"{facts['duration_s']:g} s, machine {facts['machine']}; {facts['method']} Coriolis by "
         f"{facts['algorithm']}, {facts['control']}, {facts['axes']} axes, "
-        f"limits {facts['limits']}"
+        + "".join(
+            f"{metric} at most {most:g}, " for metric, most in (facts["budget"] or {}).items()
+        )
+        + f"limits {facts['limits']}"
     )

@@ -54,10 +54,13 @@ class Findings:
             context = details.get("ctx", {})
             # Tags of a union's branches stand in the location, in angle brackets.
             found = [step for step in details["loc"] if not str(step).startswith("<")]
+            of_key = found[-1:] == ["[key]"]  # how pydantic names a mapping's key itself
+            if of_key:
+                found.pop()
             found += context.get("at", ())
             found = [step for step in found if step != ""]
             failed.add(found[0] if found else "")
-            of_key = context.get("of_key", False)
+            of_key = of_key or context.get("of_key", False)
             self.add([*prefix, *found], _words(details, found), of_key=of_key)
         return failed
 

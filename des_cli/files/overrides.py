@@ -127,7 +127,9 @@ def _same_quantity(key: str, present: Sequence[str] | dict[str, Node], *, top: b
     """Return the other keys that give the same as ``key``."""
     stem, unit = split_unit(key)
     if key in _BUDGET_OR_WEIGHTS:
-        return [o for o in present if o in _BUDGET_OR_WEIGHTS and (o == "budget") != (key == "budget")]
+        return [
+            o for o in present if o in _BUDGET_OR_WEIGHTS and (o == "budget") != (key == "budget")
+        ]
     if top:
         return [o for o in present if o != key and {key, o} <= set(_ALTERNATIVES)]
     if unit is None:

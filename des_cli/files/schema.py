@@ -14,9 +14,9 @@ from des_cli.files.sections import OMITTED, Measure, Number, Section, fault, mea
 from des_cli.files.wording import shown
 from des_cli.model.machine import Joint
 from des_cli.model.profile import (
-    BudgetMetric,
     Algorithm,
     Axes,
+    BudgetMetric,
     Control,
     Ends,
     JacobianAt,
@@ -199,8 +199,10 @@ Weight = Annotated[
 ]
 
 
-def _budget_kind(value: Any) -> str:
-    return "<by metric>" if isinstance(value, dict) else "<number>"
+def _budget_kind(value: Any) -> str | None:
+    if isinstance(value, dict):
+        return "<by metric>"
+    return None if isinstance(value, list) else "<number>"
 
 
 Budget = Annotated[
@@ -210,7 +212,12 @@ Budget = Annotated[
         Field(min_length=1, max_length=1),
         Tag("<by metric>"),
     ],
-    Discriminator(_budget_kind),
+    Discriminator(
+        _budget_kind,
+        custom_error_type="profile",
+        custom_error_message="{words}",
+        custom_error_context={"words": "must be a number, or one metric with a number"},
+    ),
     Field(description="largest joint_deviation_relative, or one fidelity metric and its limit"),
 ]
 

@@ -159,7 +159,7 @@ class RateField:
         jacobian = body_jacobian(self.chain, angle)
         determinant = abs(_determinant(jacobian))
         if determinant > SURELY_REGULAR:
-            rates = np.linalg.solve(jacobian, wanted)
+            rates = np.asarray(np.linalg.solve(jacobian, wanted), dtype=np.float64)
             if np.all(np.abs(rates) <= self.limit):
                 return rates, determinant
         return self.rates(jacobian, wanted)[0], determinant

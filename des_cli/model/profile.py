@@ -130,7 +130,7 @@ class Reduction:
     max_iterations: int = 3000
     hold: frozenset[Joint] = frozenset()
     ends: Ends = "free"
-    budget: tuple[tuple[str, float], ...] = (("joint_deviation_relative", 0.05),)
+    budget: tuple[tuple[BudgetMetric, float], ...] = (("joint_deviation_relative", 0.05),)
     tolerance: float = 1e-4
 
     def __post_init__(self) -> None:

@@ -122,7 +122,9 @@ class Run:
         """
         name = self.profile.name
         if self.solution.status not in ("converged", "acceptable"):
-            raise NoSolutionError([Problem(name, f"{self.solution.status}: {self.solution.message}")])
+            raise NoSolutionError(
+                [Problem(name, f"{self.solution.status}: {self.solution.message}")]
+            )
         problems = [
             Problem(
                 name,

@@ -46,6 +46,7 @@ class Pen:
     dashes: Any = "-"
     width: float = 1.5
     zorder: float = 3.0
+    marker: str = ""
 
 
 DASHES = (0, (5, 2.2))
@@ -134,7 +135,17 @@ def sheet(
     line = 1 - 0.2 / total
     figure.text(0.12 / WIDTH, line, title, va="center", ha="left", fontsize=11, fontweight="bold")
     handles = [
-        Line2D([], [], color=pen.color, linestyle=pen.dashes, linewidth=pen.width, label=pen.label)
+        Line2D(
+            [],
+            [],
+            color=pen.color,
+            linestyle=pen.dashes,
+            linewidth=pen.width,
+            marker=pen.marker,
+            markersize=6.0,
+            markeredgewidth=0.0,
+            label=pen.label,
+        )
         for pen in pens
     ]
     figure.legend(
@@ -151,6 +162,14 @@ def sheet(
     for axis in axes[-1]:
         axis.set_xlabel("t [s]")
     return figure, axes.tolist()
+
+
+def stamp(figure: Figure, words: str) -> None:
+    """Write a warning under the title."""
+    total = figure.get_figheight()
+    figure.text(
+        0.12 / WIDTH, 1 - 0.41 / total, words, va="center", ha="left", fontsize=9, color=VERMILION
+    )
 
 
 def draw(

@@ -28,8 +28,10 @@ from des_cli.plots.canvas import (
     png,
     set_span,
     sheet,
+    stamp,
     style,
 )
+from des_cli.plots.standing import budget_words, change_words, status_words
 from des_cli.plots.weighted import reduction_of, weighted_component
 from des_cli.units import split_unit
 
@@ -91,10 +93,15 @@ def draw_plots(trajectory: Columns, metrics: Metrics) -> dict[str, bytes]:
         "deviation": _deviation,
         "seat_g": _seat_g,
     }
+    status = status_words(metrics)
+    pictures = {}
     with style():
-        return {
-            name: png(*draw_figure(trajectory, metrics)) for name, draw_figure in figures.items()
-        }
+        for name, draw_figure in figures.items():
+            figure, title = draw_figure(trajectory, metrics)
+            if status:
+                stamp(figure, status)
+            pictures[name] = png(figure, title)
+    return pictures
 
 
 def _commands(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
@@ -113,6 +120,8 @@ def _commands(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
             (MODIFIED, columns[f"modified_{column}"] / unit.to_si),
         ]
         draw(panel, columns["t_s"], curves, label, _FLOOR[unit.suffix])
+    if changed := change_words(metrics):
+        _note(axes[0][0], f"desired: {changed}, to keep the limits")
     return figure, title
 
 
@@ -177,6 +186,8 @@ def _deviation(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
     for (panel,), joint in zip(axes, JOINTS, strict=True):
         deviation = np.degrees(columns[f"modified_{joint}_rad"] - columns[f"desired_{joint}_rad"])
         draw(panel, columns["t_s"], [(MODIFIED, deviation)], f"{joint} [deg]", _FLOOR["deg"])
+    if budget := budget_words(metrics):
+        _note(axes[0][0], f"budget: {budget}")
     return figure, title
 
 
@@ -221,4 +232,5 @@ def _share_taken_off(metrics: Metrics, key: str) -> str:
 
 
 def _note(panel: Any, words: str) -> None:
-    panel.set_title(words, loc="right", fontsize=8, color="#5A5A5A", pad=3)
+    # no mathematics: a stranger's words may hold dollar signs
+    panel.set_title(words.replace("$", r"\$"), loc="right", fontsize=8, color="#5A5A5A", pad=3)

@@ -25,12 +25,13 @@ BISECTIONS = 60
 class Baselines:
     """Reductions of the weighted Coriolis int c' R1 c, and their price in the joints.
 
-    A reduction is None where the desired motion makes no weighted Coriolis.
+    A reduction is None where the desired motion makes no weighted Coriolis; what
+    the sweep reaches is None where it runs away.
     """
 
     reduction: float | None
     sweep_reduction: float | None
-    sweep_deviation: float
+    sweep_deviation: float | None
     constant_p: float
     constant_deviation: float
 
@@ -51,14 +52,17 @@ def compare(problem: Problem, solution: Solution) -> Baselines:
     grid = Transcription(scalar)
     before = weighted_energy(problem, problem.desired)
     after = weighted_energy(problem, solution.modified)
-    swept = sweep(scalar).modified
+    swept = sweep(scalar)
+    ran_away = swept.status == "diverged"
     p = _constant_factor(grid, after) if before > after else 1.0
     constant = grid.motion(grid.follow(np.full((grid.n, 1), p)))
     nothing = before <= 1e-24
     return Baselines(
         reduction=None if nothing else 1.0 - after / before,
-        sweep_reduction=None if nothing else 1.0 - weighted_energy(problem, swept) / before,
-        sweep_deviation=joint_deviation(problem.desired, swept),
+        sweep_reduction=None
+        if nothing or ran_away
+        else 1.0 - weighted_energy(problem, swept.modified) / before,
+        sweep_deviation=None if ran_away else joint_deviation(problem.desired, swept.modified),
         constant_p=p,
         constant_deviation=joint_deviation(problem.desired, constant),
     )

@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from des_cli.model.arrays import Floats
+from des_cli.model.profile import BudgetMetric
 from des_cli.model.solution import Solution
 from des_cli.reduction.interior import Outcome
-from des_cli.reduction.measures import ATTITUDE, MEASURES, AttitudeRows
-from des_cli.reduction.optimum import FAR, NEAR, best_of, make_solution
+from des_cli.reduction.measures import measure_of, spent_on
+from des_cli.reduction.optimum import FAR, NEAR, make_solution
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.search import COARSE, TOLERANCE, Search
 from des_cli.reduction.transcription import Measure, Transcription
@@ -31,9 +32,13 @@ TARGET = 0.999
 SPENT = 0.997
 """Share of the squared budget that counts as spent."""
 
+OTHER_START = 150  # Newton steps that another start may take
 MOST_PRICES = 20
 WIDEST_STEP = 30.0  # factor between two prices while nothing brackets the right one
-FREE = 1e-7  # price, relative to the unreduced cost, at which a budget is no constraint
+NOTHING_LEFT = 1e-3
+"""Share of the unreduced cost below which there is nothing left to buy: a solution
+that spends less than its budget is then the better one."""
+
 WARM = 1e-2  # first barrier from a solution at another price, relative
 CLOSE = 1e-3  # relative width of a bracket in which the measure jumps
 
@@ -47,7 +52,9 @@ class _Priced:
     outcome: Outcome
 
 
-def spend_budget(problem: Problem, metric: str, budget: float, search: Search) -> Solution:
+def spend_budget(
+    problem: Problem, metric: BudgetMetric, budget: float, search: Search
+) -> Solution:
     """Find the most reduction that a budget buys.
 
     Parameters
@@ -55,7 +62,7 @@ def spend_budget(problem: Problem, metric: str, budget: float, search: Search) -
     problem : Problem
         As ``pose_budget`` makes it.
     metric : str
-        A key of ``MEASURES``, or ``attitude_error_max_deg``.
+        A metric of ``fidelity``.
     budget : float
         The largest value of the metric.
     search : Search
@@ -66,13 +73,7 @@ def spend_budget(problem: Problem, metric: str, budget: float, search: Search) -
         Its cost is J without the price of the measure.
     """
     grid = Transcription(problem)
-    if metric == ATTITUDE:
-        grid.rows.append(AttitudeRows(grid, float(np.radians(budget))))
-        best = best_of(
-            [search.minimise(grid, grid.desired, TOLERANCE, barrier) for barrier in (FAR, 0.1)]
-        )
-        return make_solution(grid, best, search, 2)
-    measure = MEASURES[metric](grid, budget, problem.gravity)
+    measure = measure_of(grid, metric, budget)
     found = _search_price(grid, measure, search)
     found = _better_start(grid, measure, found, search)
     grid.priced = [(found.price, measure)]
@@ -103,19 +104,26 @@ def _search_price(grid: Transcription, measure: Measure, search: Search) -> _Pri
     while len(tries) < MOST_PRICES and search.left:
         inside = min((t for t in tries if t.spent <= 1.0), key=lambda t: t.price, default=None)
         outside = max((t for t in tries if t.spent > 1.0), key=lambda t: t.price, default=None)
-        if inside and (inside.spent >= SPENT or inside.price <= FREE * unit):
+        if inside and (inside.spent >= SPENT or _rest(inside) <= NOTHING_LEFT * unit):
             break
         if inside and outside and inside.price < outside.price * (1.0 + CLOSE):
             break
         price = _next_price(tries, inside, outside)
         # from the motion that spends most inside the budget: on one branch of local
         # minima what is spent follows the price without jumps
-        x = max(allowed, key=lambda t: t.spent).outcome.x if (
-            allowed := [t for t in tries if t.spent <= 1.0]
-        ) else tries[-1].outcome.x
+        x = (
+            max(allowed, key=lambda t: t.spent).outcome.x
+            if (allowed := [t for t in tries if t.spent <= 1.0])
+            else tries[-1].outcome.x
+        )
         tries.append(_at_price(grid, measure, price, x, WARM, COARSE, search))
     allowed = [t for t in tries if t.spent <= 1.0] or tries
     return _polish(grid, measure, max(allowed, key=lambda t: t.spent), search)
+
+
+def _rest(tried: _Priced) -> float:
+    """Return the cost without the price."""
+    return tried.outcome.cost - tried.price * tried.spent
 
 
 def _next_price(tries: list[_Priced], inside: _Priced | None, outside: _Priced | None) -> float:
@@ -146,12 +154,10 @@ def _at_price(
 ) -> _Priced:
     grid.priced = [(price, measure)]
     outcome = search.minimise(grid, x, tolerance, barrier)
-    return _Priced(price, measure.value(outcome.x), outcome)
+    return _Priced(price, spent_on(measure, outcome.x), outcome)
 
 
-def _polish(
-    grid: Transcription, measure: Measure, found: _Priced, search: Search
-) -> _Priced:
+def _polish(grid: Transcription, measure: Measure, found: _Priced, search: Search) -> _Priced:
     """Solve to the full tolerance; raise the price a little if that overspends."""
     price, x, barrier = found.price, found.outcome.x, NEAR
     for _ in range(6):
@@ -163,15 +169,12 @@ def _polish(
     return fine
 
 
-def _better_start(
-    grid: Transcription, measure: Measure, found: _Priced, search: Search
-) -> _Priced:
+def _better_start(grid: Transcription, measure: Measure, found: _Priced, search: Search) -> _Priced:
     """Try the same price from other starts; keep what is better and inside the budget."""
     grid.priced = [(found.price, measure)]
-    starts = [(grid.desired, 0.1), (grid.desired, 1e-2)]
-    for x, barrier in starts:
-        outcome = search.minimise(grid, x, TOLERANCE, barrier)
-        spent = measure.value(outcome.x)
+    for barrier in (0.1,):
+        outcome = search.minimise(grid, grid.desired, TOLERANCE, barrier, most=OTHER_START)
+        spent = spent_on(measure, outcome.x)
         usable = outcome.status == "converged" and spent <= 1.0
         if usable and outcome.cost < found.outcome.cost - 1e-9 * abs(found.outcome.cost):
             found = _Priced(found.price, spent, outcome)

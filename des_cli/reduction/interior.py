@@ -360,8 +360,10 @@ class _Method:
         """
         n, width, program = self.n, self.width, self.program
         free = ~program.pinned
-        left, ahead = (block * mask[:, None, :] for block, mask in zip(
-            local.dynamics, (free[:-1], free[1:]), strict=True))
+        left, ahead = (
+            block * mask[:, None, :]
+            for block, mask in zip(local.dynamics, (free[:-1], free[1:]), strict=True)
+        )
         here = hessian * free[:, :, None] * free[:, None, :]
         next_ = across * free[:-1, :, None] * free[1:, None, :]
         ends = np.arange(width)

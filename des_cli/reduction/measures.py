@@ -6,13 +6,11 @@ is one and the square is smooth where the metric itself has a kink.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from des_cli.kinematics.chain import Chain
 from des_cli.model.arrays import Floats
-from des_cli.reduction.constraints import Rows
+from des_cli.model.profile import BudgetMetric
 from des_cli.reduction.transcription import Expansion, Measure, Transcription
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
@@ -214,9 +212,7 @@ class SeatGDeviation:
         pull += np.einsum("kijc,kij->kc", curl, products) + self.up
         moved = np.einsum("kajc,kj->kac", curl, acceleration)
         moved += np.einsum("kaijc,kij->kac", twist, products)
-        by_angle = np.einsum("kacs,kc->ksa", turned, pull) + np.einsum(
-            "kcs,kac->ksa", frame, moved
-        )
+        by_angle = np.einsum("kacs,kc->ksa", turned, pull) + np.einsum("kcs,kac->ksa", frame, moved)
         by_rate = 2.0 * np.einsum("kcs,kijc,kj->ksi", frame, curl, rate, optimize=True)
         by_acceleration = np.einsum("kcs,kjc->ksj", frame, reach)
         return (
@@ -226,62 +222,86 @@ class SeatGDeviation:
         )
 
 
-class AttitudeRows(Rows):
-    """The seat's attitude within an angle of the desired one, at samples.
+class AttitudeDeviation:
+    """The largest angle between the seat's attitude and the desired one.
+
+    A maximum is not smooth: the price is on the mean of the eighth power of the
+    chord between the attitudes, and what is spent is the largest chord itself.
 
     Parameters
     ----------
     grid : Transcription
-    angle : float
-        [rad]
+    budget : float
+        [deg]
     """
 
-    def __init__(self, grid: Transcription, angle: float) -> None:
-        super().__init__(np.arange(grid.n))
+    def __init__(self, grid: Transcription, budget: float) -> None:
+        self.grid = grid
         self.frame = grid.problem.chain.transform
         self.turn = self.frame.gradient()
         self.bend = self.turn.gradient()
         self.wanted = self.frame(grid.problem.desired.angle)[:, :3, :3]
-        self.unknowns = 3 + grid.m
-        # the squared chord |R - R_desired|^2 = 8 sin^2(angle / 2) is 6 - 2 trace
-        self.per_chord = 1.0 / (8.0 * np.sin(0.5 * angle) ** 2)
+        # |R - R_desired|^2 is 8 sin^2(angle / 2)
+        self.per_chord = 1.0 / (8.0 * np.sin(0.5 * np.radians(budget)) ** 2)
+        self.weight = grid.weight / grid.weight.sum()
 
-    def value(self, x: Floats) -> Floats:
-        """Return the squared chord over its bound, (n, 1)."""
+    def _chord(self, x: Floats) -> tuple[Floats, Floats]:
+        """Return R - R_desired, and its squared norm over that of the budget."""
         off = self.frame(x[:, :3])[:, :3, :3] - self.wanted
-        return np.sum(off**2, axis=(1, 2))[:, None] * self.per_chord
+        return off, np.sum(off**2, axis=(1, 2)) * self.per_chord
 
-    def jacobian(self, x: Floats) -> tuple[Floats, None]:
-        """Return the derivative in x_k."""
-        jacobian = np.zeros((len(x), 1, self.unknowns))
+    def spent(self, x: Floats) -> float:
+        """Return the largest squared chord over that of the budget."""
+        return float(np.max(self._chord(x)[1]))
+
+    def value(self, x: Floats) -> float:
+        """Return the value of an iterate."""
+        return float(self.weight @ self._chord(x)[1] ** 4)
+
+    def expand(self, x: Floats) -> Expansion:
+        """Expand the value with its exact Hessian."""
+        n, width = x.shape
+        off, chord = self._chord(x)
         turned = self.turn(x[:, :3])[:, :, :3, :3]
-        jacobian[:, 0, :3] = -2.0 * self.per_chord * np.einsum("kaij,kij->ka", turned, self.wanted)
-        return jacobian, None
-
-    def curvature(self, x: Floats, multiplier: Floats) -> Floats:
-        """Return the curvature along the multipliers."""
         bent = self.bend(x[:, :3])[..., :3, :3]
-        curvature = np.zeros((len(x), self.unknowns, self.unknowns))
-        curvature[:, :3, :3] = (-2.0 * self.per_chord * multiplier)[:, :, None] * np.einsum(
-            "kabij,kij->kab", bent, self.wanted
+        slope = 2.0 * self.per_chord * np.einsum("kaij,kij->ka", turned, off)
+        square = 2.0 * self.per_chord * np.einsum("kaij,kbij->kab", turned, turned, optimize=True)
+        curve = 2.0 * self.per_chord * np.einsum("kabij,kij->kab", bent, off, optimize=True)
+        first = 4.0 * self.weight * chord**3
+        second = 12.0 * self.weight * chord**2
+        gradient = np.zeros((n, width))
+        hessian, bend = np.zeros((n, width, width)), np.zeros((n, width, width))
+        gradient[:, :3] = first[:, None] * slope
+        hessian[:, :3, :3] = (
+            second[:, None, None] * slope[:, :, None] * slope[:, None, :]
+            + first[:, None, None] * square
         )
-        return curvature
+        bend[:, :3, :3] = first[:, None, None] * curve
+        return Expansion(self.value(x), gradient, hessian, bend=bend)
 
 
-def _squared(budget: float) -> float:
-    return float(np.sqrt(budget))
+def spent_on(measure: Measure, x: Floats) -> float:
+    """Return the square of the metric over the square of its budget."""
+    if isinstance(measure, AttitudeDeviation):
+        return measure.spent(x)
+    return measure.value(x)
 
 
-MEASURES: dict[str, Callable[[Transcription, float, float], Measure]] = {
-    "joint_deviation_relative": lambda grid, b, g: JointDeviation(grid, b),
-    "joint_deviation_relative_squared": lambda grid, b, g: JointDeviation(grid, _squared(b)),
-    "mean_square_one_minus_p": lambda grid, b, g: FactorDeviation(grid, b),
-    "seat_rate_deviation_relative": lambda grid, b, g: SeatRateDeviation(grid, b),
-    "seat_g_deviation_relative": lambda grid, b, g: SeatGDeviation(grid, b, g, relative=True),
-    "seat_g_rms_error_g": lambda grid, b, g: SeatGDeviation(grid, b, g, relative=False),
-}
-"""Metrics of ``fidelity`` that a budget can be set on, as integrals of the motion:
-the name, and what makes the measure of a grid, a budget and a gravity."""
-
-ATTITUDE = "attitude_error_max_deg"
-"""The metric whose budget holds at every sample instead."""
+def measure_of(grid: Transcription, metric: BudgetMetric, budget: float) -> Measure:
+    """Return the measure that belongs to a metric of ``fidelity`` and its budget."""
+    gravity = grid.problem.gravity
+    match metric:
+        case "joint_deviation_relative":
+            return JointDeviation(grid, budget)
+        case "joint_deviation_relative_squared":
+            return JointDeviation(grid, float(np.sqrt(budget)))
+        case "mean_square_one_minus_p":
+            return FactorDeviation(grid, budget)
+        case "seat_rate_deviation_relative":
+            return SeatRateDeviation(grid, budget)
+        case "seat_g_deviation_relative":
+            return SeatGDeviation(grid, budget, gravity, relative=True)
+        case "seat_g_rms_error_g":
+            return SeatGDeviation(grid, budget, gravity, relative=False)
+        case "attitude_error_max_deg":
+            return AttitudeDeviation(grid, budget)

@@ -49,7 +49,9 @@ class Points:
         return cls(
             node=np.concatenate([np.arange(n), stepping]),
             weight=np.concatenate([weight, before[stepping]]),
-            rate=np.vstack([motion.rate_start, motion.rate_end[-1:], motion.rate_end[stepping - 1]]),
+            rate=np.vstack(
+                [motion.rate_start, motion.rate_end[-1:], motion.rate_end[stepping - 1]]
+            ),
             start=np.arange(n - 1),
             end=end,
         )

@@ -89,10 +89,13 @@ def control_weight(control: Control, r2: Floats) -> Floats:
 def pose_problem(profile: Profile, desired: Motion) -> Problem:
     """Make the problem that a profile asks for along a desired motion."""
     wanted = profile.reduction
+    # A weight on the whole vector is a weight on its length, whatever the axes: seat
+    # axes then keep the arm's azimuth out of the arithmetic too.
+    isotropic = np.array_equal(wanted.r1, wanted.r1[0, 0] * np.eye(3))
     return Problem(
         desired=desired,
         chain=chain_of(profile.machine, profile.seat),
-        axes=wanted.axes,
+        axes="seat" if isotropic else wanted.axes,
         r1=wanted.r1,
         r2=control_weight(wanted.control, wanted.r2),
         tracking=wanted.tracking,

@@ -91,7 +91,9 @@ class AdaptedRates:
         """Return theta' and its Jacobian."""
         phi, slope = self._phi(x[:, :3])
         factor = x[:, 3:] @ self.joint.T
-        jacobian = np.concatenate([factor[:, :, None] * slope, phi[:, :, None] * self.joint], axis=2)
+        jacobian = np.concatenate(
+            [factor[:, :, None] * slope, phi[:, :, None] * self.joint], axis=2
+        )
         return np.asarray(factor * phi), jacobian
 
     def bend(self, x: Floats, pull: Floats) -> Floats:
@@ -131,7 +133,7 @@ class AdaptedRates:
 
 
 def _damping(axes: Floats, turn: Floats) -> tuple[Floats, Floats]:
-    """Return l^2 and its gradient: DAMPING^2 (1 - (det / DAMPING_BELOW)^2)^2 below the threshold."""
+    """Return l^2 = DAMPING^2 (1 - (det / DAMPING_BELOW)^2)^2 and its gradient; else zero."""
     one, two, three = axes[:, 0], axes[:, 1], axes[:, 2]
     determinant = np.sum(one * np.cross(two, three), axis=1)
     slope = (

@@ -21,6 +21,9 @@ from des_cli.model.solution import Iteration, Solution, Status
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.transcription import Transcription
 
+RUNAWAY = 1e6
+"""A factor on the rates that no law means: from here squares soon leave the doubles."""
+
 
 def sweep(problem: Problem, iterations: int = 1) -> Solution:
     """Apply the study's law.
@@ -34,42 +37,42 @@ def sweep(problem: Problem, iterations: int = 1) -> Solution:
     Returns
     -------
     Solution
-        ``converged`` means that the sweeps were made and gave finite numbers;
-        its ``optimality`` tells how far from the optimum they ended.
+        ``converged`` means that the sweeps were made and gave sensible numbers;
+        its ``optimality`` tells how far from the optimum they ended. Of sweeps
+        that ran away (``diverged``) it is the last one before.
     """
     grid = Transcription(problem)
     x = grid.desired
-    unreduced = grid.cost(x)
     log: list[Iteration] = []
     adjoint = np.zeros((grid.n, 3))
-    change = 0.0
+    change, message = 0.0, ""
     for number in range(1, iterations + 1):
-        adjoint = _adjoint(problem, grid.motion(x))
-        x_next = grid.follow(_law(problem, grid, adjoint))
-        change = float(np.max(np.abs(x_next[:, 3:] - x[:, 3:])))
-        x = x_next
-        cost = grid.cost(x)
-        if not np.isfinite(cost):
+        with np.errstate(over="ignore", invalid="ignore"):
+            adjoint_next = _adjoint(problem, grid.motion(x))
+            factor = _law(problem, grid, adjoint_next)
+        largest = float(np.max(np.abs(factor)))
+        if not largest < RUNAWAY:
+            message = (
+                f"sweep {number} of the study's law asks for a factor of {largest:.3g}: "
+                "it need not converge; take a larger r2 or fewer iterations"
+            )
             break
-        log.append(Iteration(number, cost, 0.0, _optimality(grid, x), 1.0))
-    cost = grid.cost(x)
-    finite = bool(np.isfinite(cost) and np.all(np.isfinite(x)))
-    status: Status = "converged" if finite else "diverged"
+        x_next = grid.follow(factor)
+        change = float(np.max(np.abs(factor - x[:, 3:])))
+        x, adjoint = x_next, adjoint_next
+        log.append(Iteration(number, grid.cost(x), 0.0, _optimality(grid, x), 1.0))
+    status: Status = "diverged" if message else "converged"
     plural = "one sweep" if iterations == 1 else f"{iterations} sweeps"
-    message = (
-        f"{plural} of the study's law, which is not the optimum; "
-        f"the last sweep changed the factor by up to {change:.3g}"
-        if finite
-        else f"the study's law left the finite numbers within {plural}"
-    )
     return Solution(
         status=status,
-        message=message,
+        message=message
+        or f"{plural} of the study's law, which is not the optimum; "
+        f"the last sweep changed the factor by up to {change:.3g}",
         control=x[:, 3:],
         modified=grid.motion(x),
         adjoint=adjoint,
-        cost=cost,
-        cost_unreduced=unreduced,
+        cost=log[-1].cost if log else grid.cost(x),
+        cost_unreduced=grid.cost(grid.desired),
         optimality=log[-1].optimality if log else float("inf"),
         iterations=len(log),
         log=tuple(log),

@@ -255,7 +255,9 @@ class Transcription:
         form = self.coriolis_form(x)
         gradient, pull = self._point_gradient(x, form)
         hessian = np.swapaxes(form.jacobian, 1, 2) @ problem.r1 @ form.jacobian
-        bend = points.scatter(points.weight[:, None, None] * self.coriolis_curvature(x, pull), self.n)
+        bend = points.scatter(
+            points.weight[:, None, None] * self.coriolis_curvature(x, pull), self.n
+        )
         diagonal = np.concatenate([problem.tracking, problem.r2])
         hessian[:, np.arange(3 + self.m), np.arange(3 + self.m)] += diagonal
         expansion = Expansion(

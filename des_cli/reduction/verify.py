@@ -17,10 +17,10 @@ import numpy as np
 from des_cli.kinematics.chain import joint_axes, seat_rotation
 from des_cli.kinematics.orientation import ground_jacobian
 from des_cli.kinematics.response import respond_on
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Flags, Floats
 from des_cli.model.machine import JOINTS, Machine
 from des_cli.model.motion import Motion
-from des_cli.model.profile import Reduction
+from des_cli.model.profile import BudgetMetric, Reduction
 from des_cli.model.run import Check
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
@@ -31,6 +31,10 @@ DYNAMICS_TOLERANCE = 1e-8
 COST_TOLERANCE = 1e-9
 """Relative difference of the recomputed cost."""
 
+TINY_COST = 1e-6
+"""Least cost to be relative to, as a share of what standing still would cost: a desired
+motion without Coriolis costs nothing, and rounding is no error of it."""
+
 OPTIMALITY_TOLERANCE = 1e-5
 """Largest slope of the cost along a test direction, relative to the largest slope
 that the desired motion has along any of them."""
@@ -38,9 +42,15 @@ that the desired motion has along any of them."""
 BOUND_TOLERANCE = 1e-9
 """Relative excess over a limit or a budget that rounding alone may make."""
 
+TIGHT = 1.0 - 1e-3
+"""Share of a limit above which it may hold a factor: nearer, the solver's barrier pushes."""
+
 DIFFERENCE_STEP = 1e-4
 """Half step of the central difference; the cost is quartic in it, so that its
 truncation error is of the order of 1e-8."""
+
+BUDGET_STEP = 1e-6
+"""The same for what a budget's price is on, which may be of the eighth power."""
 
 COMPLEX_STEP = 1e-30
 """A complex step has no cancellation, so that it may be this small."""
@@ -76,19 +86,22 @@ def verify(problem: Problem, solution: Solution, wanted: Reduction) -> tuple[Che
     optimum = wanted.algorithm == "optimum"
     checks += _dynamics(problem, solution)
     cost = _cost(problem, solution.control, modified)
-    checks.append(
-        Check("relative error of the cost", _relative(cost, solution.cost), COST_TOLERANCE)
-    )
+    least = TINY_COST * float(np.sum(problem.r2)) * float(modified.t[-1] - modified.t[0])
+    error = abs(cost - solution.cost) / max(abs(solution.cost), least)
+    checks.append(Check("relative error of the cost", error, COST_TOLERANCE))
     if problem.machine is not None:
         checks += _limits(problem.machine, modified)
     if optimum and wanted.method == "zero":
         checks.append(_zero(problem, modified, wanted))
     elif optimum:
-        worse = max(0.0, solution.cost / max(solution.cost_unreduced, 1e-300) - 1.0)
+        rise = solution.cost - solution.cost_unreduced
+        worse = max(0.0, rise) / max(solution.cost_unreduced, least)
         checks.append(Check("excess of the cost over the desired motion's", worse, COST_TOLERANCE))
         for metric, budget in wanted.budget:
             spent = spent_budget(problem, modified, solution.control, metric) / budget
-            checks.append(Check(f"excess over the budget on {metric}", spent - 1.0, BOUND_TOLERANCE))
+            checks.append(
+                Check(f"excess over the budget on {metric}", spent - 1.0, BOUND_TOLERANCE)
+            )
         if problem.jacobian == "desired":
             checks.append(_optimality(problem, solution, wanted))
     return tuple(checks)
@@ -112,25 +125,34 @@ def spent_budget(problem: Problem, modified: Motion, control: Floats, metric: st
     def norm(values: Floats) -> float:
         return float(np.sqrt(0.5 * np.sum(step * np.sum(values**2, axis=(1, 2)))))
 
+    def share(off: Floats, whole: Floats) -> float:
+        return norm(off) / max(norm(whole), 1e-150)
+
     if metric.startswith("joint_deviation_relative"):
-        ratio = norm(modified.angle_sides - desired.angle_sides) / norm(desired.angle_sides)
-        return ratio**2 if metric.endswith("squared") else ratio
+        ratio = share(modified.angle_sides - desired.angle_sides, desired.angle_sides)
+        return ratio * ratio if metric.endswith("squared") else ratio
     if metric == "mean_square_one_minus_p":
         idle = np.stack([control[:-1], control[1:]], axis=1) - 1.0
-        return norm(idle) ** 2 / float(np.sum(step)) / control.shape[1]
+        return float(norm(idle) ** 2 / np.sum(step) / control.shape[1])
     if metric == "attitude_error_max_deg":
-        wanted, made = (seat_rotation(problem.chain, m.angle) for m in (desired, modified))
-        trace = np.sum(wanted * made, axis=(1, 2))
-        return float(np.degrees(np.max(np.arccos(np.clip(0.5 * (trace - 1.0), -1.0, 1.0)))))
+        return float(np.max(_attitude_error(problem, modified)))
     before, after = (
         respond_on(problem.chain, problem.gravity, motion) for motion in (desired, modified)
     )
     if metric == "seat_rate_deviation_relative":
-        return norm(after.seat_rate - before.seat_rate) / norm(before.seat_rate)
-    off = norm(after.seat_g - before.seat_g)
+        return share(after.seat_rate - before.seat_rate, before.seat_rate)
     if metric == "seat_g_rms_error_g":
-        return off / float(np.sqrt(np.sum(step)))
-    return off / norm(before.seat_g)
+        return norm(after.seat_g - before.seat_g) / float(np.sqrt(np.sum(step)))
+    return share(after.seat_g - before.seat_g, before.seat_g)
+
+
+def _attitude_error(problem: Problem, modified: Motion) -> Floats:
+    """Return the angle between the seat's attitudes at each sample [deg]."""
+    wanted, made = (
+        seat_rotation(problem.chain, motion.angle) for motion in (problem.desired, modified)
+    )
+    trace = np.sum(wanted * made, axis=(1, 2))
+    return np.asarray(np.degrees(np.arccos(np.clip(0.5 * (trace - 1.0), -1.0, 1.0))))
 
 
 def _dynamics(problem: Problem, solution: Solution) -> list[Check]:
@@ -175,7 +197,7 @@ def _integrate(problem: Problem, factor: Floats, start: Floats, end: Floats) -> 
     straight = 0.5 * step * (desired.rate_start + desired.rate_end)
     missed = np.diff(desired.angle, axis=0) - straight
     increment[:, 1:] += (0.5 * (factor[:-1] + factor[1:]) * missed)[:, 1:]
-    return desired.angle[0] + np.vstack([np.zeros(3), np.cumsum(increment, axis=0)])
+    return np.asarray(desired.angle[0] + np.vstack([np.zeros(3), np.cumsum(increment, axis=0)]))
 
 
 def _adapted_gap(
@@ -202,9 +224,7 @@ def _cost(problem: Problem, control: Floats, motion: Motion) -> float:
         c = coriolis_by_complex_step(problem, motion.angle[at], rate)
         running = np.sum((c @ problem.r1) * c, axis=1)
         running += np.sum(problem.r2 * (1.0 - control[at]) ** 2, axis=1)
-        running += np.sum(
-            problem.tracking * (desired.angle[at] - motion.angle[at]) ** 2, axis=1
-        )
+        running += np.sum(problem.tracking * (desired.angle[at] - motion.angle[at]) ** 2, axis=1)
         total += 0.25 * float(np.sum(step * running))
     return total
 
@@ -246,24 +266,95 @@ def _zero(problem: Problem, motion: Motion, wanted: Reduction) -> Check:
 def _optimality(problem: Problem, solution: Solution, wanted: Reduction) -> Check:
     """Test the first-order conditions along directions.
 
-    Without constraints no direction may have a slope. With limits or a budget, none
-    that leads to another admissible motion may lead downhill.
+    The directions change no factor that a limit holds: along them the cost has no
+    slope, or, with a budget, the same multiple of what the budget's metric has.
     """
     control, ones = solution.control, np.ones_like(solution.control)
-    bound = problem.machine is not None or bool(wanted.budget) or problem.ends != "free"
-    held = problem.held if control.shape[1] == 3 else np.zeros(1, dtype=bool)
-    here, there = 0.0, 0.0
+    free = _free(problem, solution.modified, control.shape)
+    there = 0.0
+    of_cost, of_metric = [], []
     for direction in _directions(problem, control.shape):
-        direction = direction * ~held
         there = max(there, abs(_slope(problem, ones, direction)))
-        if not bound:
-            here = max(here, abs(_slope(problem, control, direction)))
-            continue
-        admissible = _admissible(problem, wanted, direction)
-        here = max(here, -_slope(problem, control, admissible - control))
+        direction = _keeping_ends(problem, direction * free)
+        of_cost.append(_slope(problem, control, direction))
+        of_metric.append(_slope_of_budget(problem, control, direction, wanted))
+    cost, metric = np.array(of_cost), np.array(of_metric)
+    price = max(0.0, -float(cost @ metric) / max(float(metric @ metric), 1e-300))
+    here = float(np.max(np.abs(cost + price * metric)))
     floor = float(np.ptp(problem.desired.t) * np.min(problem.r2)) * 1e-3
     name = "relative slope of the cost at the optimum"
     return Check(name, here / max(there, floor), OPTIMALITY_TOLERANCE)
+
+
+def _free(problem: Problem, motion: Motion, shape: tuple[int, ...]) -> Flags:
+    """Return the factors that can move both ways, (n, m)."""
+    free = np.tile(~problem.held if shape[1] == 3 else np.ones(3, dtype=bool), (shape[0], 1))
+    if problem.machine is not None:
+        rate, acceleration, angle = (
+            np.array([getattr(limit, name) for limit in problem.machine.limits])
+            for name in ("rate", "acceleration", "angle")
+        )
+        fastest = np.maximum(np.abs(motion.rate_start), np.abs(motion.rate_end))
+        tight = (fastest > TIGHT * rate) | (np.abs(motion.acceleration) > TIGHT * acceleration)
+        free[:-1] &= ~tight
+        free[1:] &= ~tight
+        free &= ~_now_or_later(np.abs(motion.angle) > TIGHT * angle)
+    if problem.ends != "free":
+        free[0] = False
+    if problem.ends == "match-both":
+        free[-1] = False
+    return np.asarray(free if shape[1] == 3 else free.all(axis=1, keepdims=True))
+
+
+def _now_or_later(tight: Flags) -> Flags:
+    """Return where a flag is set or will be: an angle depends on every factor before it."""
+    return np.asarray(np.logical_or.accumulate(tight[::-1], axis=0)[::-1])
+
+
+def _keeping_ends(problem: Problem, direction: Floats) -> Floats:
+    """Return the part of a direction that leaves the last angles alone, if they must match."""
+    if problem.ends != "match-both":
+        return direction
+    desired = problem.desired
+    half = 0.5 * np.diff(desired.t)[:, None]
+    missed = np.diff(desired.angle, axis=0) - half * (desired.rate_start + desired.rate_end)
+    missed[:, 0] = 0.0
+    reach = np.zeros_like(desired.angle)  # d theta(tf) / d u_k, joint by joint
+    reach[:-1] += half * desired.rate_start + 0.5 * missed
+    reach[1:] += half * desired.rate_end + 0.5 * missed
+    reach = reach * (direction != 0.0)
+    if direction.shape[1] == 1:
+        amounts = np.linalg.lstsq(reach.T @ reach, reach.T @ direction, rcond=None)[0]
+        return np.asarray(direction - reach @ amounts)
+    size = np.maximum(np.sum(reach**2, axis=0), 1e-300)
+    return np.asarray(direction - reach * (np.sum(reach * direction, axis=0) / size))
+
+
+def _slope_of_budget(
+    problem: Problem, control: Floats, direction: Floats, wanted: Reduction
+) -> float:
+    """Return the slope of what a budget's price is on, 0 where there is no budget."""
+    for metric, budget in wanted.budget:
+        ahead, behind = (
+            _priced(problem, _motion(problem, moved), moved, metric, budget)
+            for moved in (
+                control + BUDGET_STEP * direction,
+                control - BUDGET_STEP * direction,
+            )
+        )
+        return (ahead - behind) / (2.0 * BUDGET_STEP)
+    return 0.0
+
+
+def _priced(
+    problem: Problem, motion: Motion, control: Floats, metric: BudgetMetric, budget: float
+) -> float:
+    """Return a smooth form of a metric over its budget: its square; of a maximum, a mean."""
+    if metric != "attitude_error_max_deg":
+        return (spent_budget(problem, motion, control, metric) / budget) ** 2
+    sine = np.sin(np.radians(0.5 * _attitude_error(problem, motion)))
+    power = (sine / np.sin(np.radians(0.5 * budget))) ** 8
+    return float(np.sum(0.5 * motion.step * (power[:-1] + power[1:])))
 
 
 def _directions(problem: Problem, shape: tuple[int, ...]) -> Iterator[Floats]:
@@ -280,26 +371,6 @@ def _directions(problem: Problem, shape: tuple[int, ...]) -> Iterator[Floats]:
         yield direction / np.max(np.abs(direction))
 
 
-def _admissible(problem: Problem, wanted: Reduction, direction: Floats) -> Floats:
-    """Return factors from one along a direction, as far as limits and budget allow."""
-    if problem.ends != "free":
-        direction = direction - direction[:1] * (np.arange(len(direction)) == 0)[:, None]
-    if problem.ends == "match-both":
-        return np.ones_like(direction)
-    size = 1.0
-    for _ in range(40):
-        control = 1.0 + size * direction
-        motion = _motion(problem, control)
-        kept = problem.machine is None or all(c.ok for c in _limits(problem.machine, motion))
-        if kept and all(
-            spent_budget(problem, motion, control, metric) <= budget
-            for metric, budget in wanted.budget
-        ):
-            return control
-        size *= 0.5
-    return np.ones_like(direction)
-
-
 def _motion(problem: Problem, control: Floats) -> Motion:
     """Return the motion of factors along the desired rates."""
     factor = np.broadcast_to(control, (len(control), 3))
@@ -313,7 +384,3 @@ def _slope(problem: Problem, control: Floats, direction: Floats) -> float:
         for moved in (control + DIFFERENCE_STEP * direction, control - DIFFERENCE_STEP * direction)
     )
     return (ahead - behind) / (2.0 * DIFFERENCE_STEP)
-
-
-def _relative(one: float, other: float) -> float:
-    return abs(one - other) / max(abs(other), 1e-300)

@@ -8,6 +8,7 @@ from typing import Any
 
 from des_cli.files.run_folder import StoredRun
 from des_cli.model.machine import JOINTS
+from des_cli.plots.standing import budget_words, status_words
 from des_cli.report.numbers import DASH, change, lookup, number, percent, plain, words
 
 
@@ -63,6 +64,12 @@ _GROUPS: tuple[tuple[str, tuple[_Quantity, ...]], ...] = (
             _Quantity("… squared", "fidelity.joint_deviation_relative_squared", percent, -1),
             _Quantity("seat rate deviation", "fidelity.seat_rate_deviation_relative", percent, -1),
             _Quantity("seat G deviation", "fidelity.seat_g_deviation_relative", percent, -1),
+            _Quantity(
+                "desired motion changed for the limits",
+                "executable.joint_change_relative",
+                percent,
+                0,
+            ),
         ),
     ),
     (
@@ -105,6 +112,7 @@ def comparison_rows(runs: Sequence[StoredRun]) -> list[Row]:
         Row("algorithm", tuple(Cell(words(lookup(each, "solver.algorithm"))) for each in metrics)),
         Row("control", tuple(Cell(words(lookup(each, "solver.control"))) for each in metrics)),
         Row("axes", tuple(Cell(words(lookup(each, "solver.axes"))) for each in metrics)),
+        Row("budget", tuple(_budget(each) for each in metrics)),
         Row("cost J", tuple(Cell(plain(number(each, "solver.cost"))) for each in metrics)),
         Row("limits", tuple(limits_cell(each) for each in metrics)),
     ]
@@ -132,8 +140,12 @@ def limits_cell(metrics: Mapping[str, Any]) -> Cell:
 
 
 def _status(metrics: Mapping[str, Any]) -> Cell:
-    status = words(lookup(metrics, "solver.status"))
-    return Cell(status, "bad" if lookup(metrics, "solver.converged") is False else "")
+    unfinished = status_words(metrics)
+    return Cell(unfinished or words(lookup(metrics, "solver.status")), "bad" if unfinished else "")
+
+
+def _budget(metrics: Mapping[str, Any]) -> Cell:
+    return Cell(budget_words(metrics) or "none: weights")
 
 
 def _compared(quantity: _Quantity, metrics: Sequence[Mapping[str, Any]]) -> Row:

@@ -11,6 +11,7 @@ from typing import Any
 from des_cli.files.run_folder import StoredRun
 from des_cli.model.machine import JOINTS
 from des_cli.plots import CAPTIONS, draw_plots
+from des_cli.plots.standing import budget_words
 from des_cli.report.comparison import Cell
 from des_cli.report.numbers import (
     DASH,
@@ -58,7 +59,7 @@ class Section:
         Made from the position, never from the name.
     name, what : str
         What the run is called, and in one line what was done with it.
-    sentences, notices : list of str
+    sentences, notices, violations : list of str
     coriolis, limits, joints, seat : list of list of Cell
         Rows of the tables.
     facts : list of (str, str)
@@ -71,6 +72,7 @@ class Section:
     what: str
     sentences: list[str]
     notices: list[str]
+    violations: list[str]
     coriolis: list[list[Cell]]
     limits: list[list[Cell]]
     joints: list[list[Cell]]
@@ -101,6 +103,7 @@ def run_section(run: StoredRun, label: str, number_of_run: int) -> Section:
         what=_what(metrics),
         sentences=summary_sentences(metrics),
         notices=_texts(lookup(metrics, "notices")),
+        violations=_texts(lookup(metrics, "violations")),
         coriolis=_coriolis_rows(metrics),
         limits=_limit_rows(metrics),
         joints=_joint_rows(metrics),
@@ -198,6 +201,8 @@ def _facts(run: StoredRun) -> list[tuple[str, str]]:
     return [
         ("status", f"{status}: {message}"),
         ("iterations", words(lookup(metrics, "solver.iterations"))),
+        ("budget", budget_words(metrics) or DASH),
+        ("limits", words(lookup(metrics, "solver.limits"))),
         (
             "cost J",
             f"{plain(number(metrics, 'solver.cost'), 7)} "

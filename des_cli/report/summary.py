@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from des_cli.plots.standing import budget_words, change_words
 from des_cli.plots.weighted import weighted_component
 from des_cli.report.comparison import limits_cell
 from des_cli.report.numbers import lookup, number, percent, plain, words
@@ -35,10 +36,18 @@ def summary_sentences(metrics: Mapping[str, Any]) -> list[str]:
     Returns
     -------
     list of str
-        The gain and its cost; what got worse; what is wrong; what a simpler
-        way would have cost. What is not known is left out.
+        The gain and its cost; what was allowed; what keeping the limits changed;
+        what got worse; what is wrong; what a simpler way would have cost. What
+        is not known is left out.
     """
-    sentences = [_gain(metrics), _felt(metrics), _moved(metrics), _wrong(metrics)]
+    sentences = [
+        _gain(metrics),
+        _allowed(metrics),
+        _felt(metrics),
+        _changed(metrics),
+        _moved(metrics),
+        _wrong(metrics),
+    ]
     return [sentence for sentence in [*sentences, *_baselines(metrics)] if sentence]
 
 
@@ -57,6 +66,24 @@ def _gain(metrics: Mapping[str, Any]) -> str:
     if not taken:
         return f"Took nothing off the Coriolis, at {price}."
     return f"Took {_listed(taken)} for {price}."
+
+
+def _allowed(metrics: Mapping[str, Any]) -> str:
+    budget = budget_words(metrics)
+    return f"Its budget: {budget}." if budget else ""
+
+
+def _changed(metrics: Mapping[str, Any]) -> str:
+    if lookup(metrics, "executable.replaced") is not True:
+        return ""
+    changed = change_words(metrics)
+    if not changed:
+        return "The desired motion itself keeps the machine's limits."
+    whole = percent(number(metrics, "executable.joint_change_relative"))
+    return (
+        "The machine cannot make the motion that the profile asks for: the nearest one inside "
+        f"its limits is the desired motion here ({changed}; {whole} of the joint angles)."
+    )
 
 
 def _felt(metrics: Mapping[str, Any]) -> str:
@@ -85,8 +112,14 @@ def _moved(metrics: Mapping[str, Any]) -> str:
 
 def _wrong(metrics: Mapping[str, Any]) -> str:
     parts = []
-    if lookup(metrics, "solver.converged") is False:
-        parts.append(f"The solver did not converge ({words(lookup(metrics, 'solver.status'))}).")
+    status = words(lookup(metrics, "solver.status"))
+    if status == "acceptable":
+        parts.append(
+            "The solver stopped short of its tolerance (acceptable): the motion is verified, "
+            "but not quite the best one."
+        )
+    elif lookup(metrics, "solver.converged") is False:
+        parts.append(f"The solver did not converge ({status}).")
     limits = limits_cell(metrics)
     if limits.mark == "bad":
         parts.append(f"The modified motion breaks limits of the machine; {limits.text}.")

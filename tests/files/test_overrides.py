@@ -32,12 +32,16 @@ def problems_of(*settings: str) -> list[str]:
 
 
 def test_values_are_yaml() -> None:
-    found = changed("reduction.r2=0.2", "reduction.r1=[0, 2, 0]", "reduction.axes=seat",
-                    "reduction.budget={seat_g_rms_error_g: 1e-1}", "name='5'")  # fmt: skip
-    assert found["reduction"] == {
-        "r2": 0.2, "r1": [0, 2, 0], "axes": "seat", "budget": {"seat_g_rms_error_g": 0.1},
-    }  # fmt: skip
+    found = changed("reduction.r2=0.2", "reduction.r1=[0, 2, 0]", "reduction.axes=seat", "name='5'")
+    assert found["reduction"] == {"r2": 0.2, "r1": [0, 2, 0], "axes": "seat"}
     assert found["name"] == "5"
+
+
+def test_a_budget_and_weights_replace_each_other() -> None:
+    weights = ("reduction.r2=0.2", "reduction.tracking=3")
+    budget = "reduction.budget={seat_g_rms_error_g: 1e-1}"
+    assert changed(*weights, budget)["reduction"] == {"budget": {"seat_g_rms_error_g": 0.1}}
+    assert changed(budget, *weights)["reduction"] == {"r2": 0.2, "tracking": 3}
 
 
 def test_lists_are_indexed_and_other_members_stay() -> None:

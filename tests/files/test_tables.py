@@ -177,7 +177,7 @@ def test_trajectory_columns_hold_what_their_names_say(synthetic_run: MakeRun) ->
         np.testing.assert_array_equal(columns[f"p_{joint}"], run.solution.control[:, i])
         np.testing.assert_array_equal(columns[f"adjoint_{joint}"], run.solution.adjoint[:, i])
         acceleration = columns[f"desired_{joint}_rad_s2"]
-        interval = run.desired.motion.acceleration[:, i]
+        interval = run.desired.acceleration[:, i]
         assert acceleration[0] == interval[0]
         assert acceleration[-1] == interval[-1]
         np.testing.assert_allclose(acceleration[1:-1], (interval[:-1] + interval[1:]) / 2)

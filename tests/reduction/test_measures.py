@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -11,10 +9,18 @@ from des_cli.kinematics.chain import seat_rotation
 from des_cli.kinematics.response import respond
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
-from des_cli.reduction.measures import MEASURES, AttitudeRows
+from des_cli.reduction.measures import measure_of, spent_on
 from des_cli.reduction.transcription import Transcription
 
 BUDGET = 0.3
+INTEGRALS = [
+    "joint_deviation_relative",
+    "joint_deviation_relative_squared",
+    "mean_square_one_minus_p",
+    "seat_rate_deviation_relative",
+    "seat_g_deviation_relative",
+    "seat_g_rms_error_g",
+]
 
 
 @pytest.fixture(params=["scalar", "per-joint"])
@@ -54,19 +60,19 @@ def metric(name, grid, x):
     return np.sqrt(felt / (square(before.seat_g) if relative else step.sum()))
 
 
-@pytest.mark.parametrize("name", list(MEASURES))
+@pytest.mark.parametrize("name", INTEGRALS)
 def test_at_its_budget_a_measure_is_one(name, grid, x):
     value = metric(name, grid, x)
-    at_budget = MEASURES[name](grid, value, DES.gravity)
-    assert at_budget.value(x) == pytest.approx(1.0, rel=1e-9)
+    at_budget = measure_of(grid, name, value)
+    assert spent_on(at_budget, x) == pytest.approx(1.0, rel=1e-9)
     assert at_budget.expand(x).cost == pytest.approx(1.0, rel=1e-9)
     assert at_budget.value(grid.desired) == pytest.approx(0.0, abs=1e-20)
-    assert MEASURES[name](grid, 2.0 * value, DES.gravity).value(x) < 0.6
+    assert measure_of(grid, name, 2.0 * value).value(x) < 0.6
 
 
-@pytest.mark.parametrize("name", list(MEASURES))
-def test_gradient_and_hessian(name, grid, x):
-    measure = MEASURES[name](grid, BUDGET, DES.gravity)
+@pytest.mark.parametrize("name", [*INTEGRALS, "attitude_error_max_deg"])
+def test_gradient(name, grid, x):
+    measure = measure_of(grid, name, BUDGET)
     rng = np.random.default_rng(6)
     expansion = measure.expand(x)
     for _ in range(4):
@@ -74,7 +80,12 @@ def test_gradient_and_hessian(name, grid, x):
         ahead, behind = x + h * move, x - h * move
         slope = (measure.value(ahead) - measure.value(behind)) / (2.0 * h)
         assert np.sum(expansion.gradient * move) == pytest.approx(slope, rel=1e-6)
-    # At the desired motion nothing is missed: there Gauss and Newton's Hessian is exact.
+
+
+@pytest.mark.parametrize("name", INTEGRALS)
+def test_where_nothing_is_missed_the_gauss_newton_hessian_is_exact(name, grid, x):
+    measure = measure_of(grid, name, BUDGET)
+    rng = np.random.default_rng(6)
     expansion = measure.expand(grid.desired)
     for _ in range(4):
         move, h = rng.normal(size=x.shape), 1e-5
@@ -87,9 +98,10 @@ def test_gradient_and_hessian(name, grid, x):
         np.testing.assert_allclose(found, bend, rtol=1e-5, atol=1e-6 * np.abs(bend).max())
 
 
-def test_what_bends_a_hessian_is_exact(grid, x):
+@pytest.mark.parametrize("name", ["seat_rate_deviation_relative", "attitude_error_max_deg"])
+def test_what_bends_a_hessian_is_exact(name, grid, x):
     # Where a measure tells its curvature, the sum is the exact Hessian anywhere.
-    measure = MEASURES["seat_rate_deviation_relative"](grid, BUDGET, DES.gravity)
+    measure = measure_of(grid, name, BUDGET)
     expansion = measure.expand(x)
     assert expansion.bend is not None
     move, h = np.random.default_rng(7).normal(size=x.shape), 1e-5
@@ -99,23 +111,13 @@ def test_what_bends_a_hessian_is_exact(grid, x):
     np.testing.assert_allclose(found, bend, rtol=1e-5, atol=1e-6 * np.abs(bend).max())
 
 
-def test_attitude_rows(grid, x):
-    frames = SimpleNamespace(
-        made=seat_rotation(grid.problem.chain, x[:, :3]),
-        wanted=seat_rotation(grid.problem.chain, grid.desired[:, :3]),
-    )
-    cosine = 0.5 * (np.einsum("kij,kij->k", frames.made, frames.wanted) - 1.0)
+def test_the_largest_attitude_error_is_what_is_spent(grid, x):
+    made, wanted = (seat_rotation(grid.problem.chain, each[:, :3]) for each in (x, grid.desired))
+    cosine = 0.5 * (np.einsum("kij,kij->k", made, wanted) - 1.0)
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
-    largest = angle.max()
-    rows = AttitudeRows(grid, largest)
-    value = rows.value(x)[:, 0]
-    assert value.max() == pytest.approx(1.0, rel=1e-9)
-    np.testing.assert_allclose(value, (np.sin(angle / 2) / np.sin(largest / 2)) ** 2, rtol=1e-6)
-    rng = np.random.default_rng(8)
-    move, multiplier, h = rng.normal(size=x.shape), rng.normal(size=(len(x), 1)), 1e-5
-    slope = (rows.value(x + h * move) - rows.value(x - h * move))[:, 0] / (2.0 * h)
-    found = (rows.jacobian(x)[0] @ move[:, :, None])[:, 0, 0]
-    np.testing.assert_allclose(found, slope, rtol=1e-6, atol=1e-8)
-    ahead, behind = (multiplier * rows.jacobian(x + s * h * move)[0][:, 0] for s in (1, -1))
-    bent = (rows.curvature(x, multiplier) @ move[:, :, None])[:, :, 0]
-    np.testing.assert_allclose(bent, (ahead - behind) / (2.0 * h), rtol=1e-5, atol=1e-6)
+    measure = measure_of(grid, "attitude_error_max_deg", np.degrees(angle.max()))
+    assert spent_on(measure, x) == pytest.approx(1.0, rel=1e-9)
+    # Priced is the mean of the eighth power of the chord.
+    share = np.sin(angle / 2.0) / np.sin(angle.max() / 2.0)
+    mean = np.trapezoid(share**8, grid.problem.desired.t) / np.ptp(grid.problem.desired.t)
+    assert measure.value(x) == pytest.approx(mean, rel=1e-9)

@@ -1,0 +1,63 @@
+"""The lists that ``sweep`` varies, as they stand on the command line."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias, get_args
+
+import click
+
+DEFAULT_METRIC, DEFAULT_BUDGETS = "joint_deviation_relative", (0.01, 0.02, 0.05, 0.1)
+CONTROLS = ("scalar", "per-joint")
+
+Budgets: TypeAlias = tuple[str, tuple[float, ...]]
+"""A metric and its budgets."""
+
+
+def _read_numbers(text: str, example: str) -> tuple[float, ...]:
+    """Read positive numbers with commas between, each once."""
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise click.BadParameter(f"{text!r} is not a list of numbers, such as {example}.") from None
+    if not all(math.isfinite(value) and value > 0.0 for value in values):
+        raise click.BadParameter(f"{text!r}: each must be a number above 0.")
+    return tuple(dict.fromkeys(values))
+
+
+def read_budgets(
+    context: click.Context, parameter: click.Parameter, text: str | None
+) -> Budgets | None:
+    """Read ``0.01,0.02`` or ``METRIC=0.01,0.02``."""
+    if text is None:
+        return None
+    metric, equals, values = text.rpartition("=")
+    if equals:
+        _require_metric(metric.strip())
+    return (metric.strip() or DEFAULT_METRIC, _read_numbers(values, "0.01,0.02,0.05,0.1"))
+
+
+def _require_metric(metric: str) -> None:
+    from des_cli.files.wording import did_you_mean, one_of
+    from des_cli.model.profile import BudgetMetric
+
+    known = get_args(BudgetMetric)
+    if metric not in known:
+        hint = did_you_mean(metric, known)
+        raise click.BadParameter(f"{metric!r} is not a metric{hint}; it is {one_of(known)}.")
+
+
+def read_weights(
+    context: click.Context, parameter: click.Parameter, text: str | None
+) -> tuple[float, ...] | None:
+    """Read ``8,1,0.2``."""
+    return None if text is None else _read_numbers(text, "8,1,0.2")
+
+
+def read_controls(context: click.Context, parameter: click.Parameter, text: str) -> tuple[str, ...]:
+    """Read ``scalar,per-joint``."""
+    controls = tuple(dict.fromkeys(part.strip() for part in text.split(",")))
+    wrong = [control for control in controls if control not in CONTROLS]
+    if wrong:
+        raise click.BadParameter(f"{wrong[0]!r} is not {' or '.join(CONTROLS)}.")
+    return controls

@@ -1,0 +1,81 @@
+"""The points of a trade-off curve as aligned text, for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from des_cli.cli.summary import change, number, percent
+from des_cli.model.tradeoff import TradePoint
+
+# Columns: head, field, how a value is written.
+_COLUMNS = (
+    ("objective", "objective_reduction", percent),
+    ("vector", "vector_reduction", percent),
+    ("BB3", "bb3_reduction", percent),
+    ("seat x", "seat_x_reduction", percent),
+    ("seat y", "seat_y_reduction", percent),
+    ("seat z", "seat_z_reduction", percent),
+    ("joints", "joint_deviation_relative", percent),
+    ("rate", "seat_rate_deviation_relative", percent),
+    ("G rms [g]", "seat_g_rms_error_g", number),
+    ("turn [deg]", "attitude_error_max_deg", number),
+)
+_WIDTH = 11
+_TITLES = {
+    "report-sweep": "study's single sweep",
+    "constant-p": "constant p",
+    "scalar": "optimum, one factor for all joints",
+    "per-joint": "optimum, one factor for each joint",
+}
+
+
+def points_text(points: Sequence[TradePoint], about: str) -> str:
+    """Write a table for each curve: reductions, then what they cost.
+
+    A minus before a reduction is a growth.
+    """
+    lines = [about, "reduction of the Coriolis; deviation of joints, seat rate, seat G, attitude"]
+    for title, curve in groupby(points, key=_title):
+        lines += ["", *_curve(title, list(curve))]
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def point_line(point: TradePoint) -> str:
+    """Say how one point ended."""
+    name = f"{point.control}, {point.swept} {point.value:g}"
+    if point.objective_reduction is None:
+        return f"{name}: {point.status}: {point.message}"
+    steps = "1 iteration" if point.iterations == 1 else f"{point.iterations} iterations"
+    gained = f"{change(point.objective_reduction)} at joints {_joints(point)}"
+    why = f" ({point.message})" if point.status == "unverified" else ""
+    return f"{name}: {point.status} in {steps}, {gained}{why}"
+
+
+def _joints(point: TradePoint) -> str:
+    return percent(point.joint_deviation_relative)
+
+
+def _title(point: TradePoint) -> str:
+    return _TITLES[point.control if point.algorithm == "optimum" else point.algorithm]
+
+
+def _curve(title: str, points: Sequence[TradePoint]) -> Iterator[str]:
+    yield title
+    swept = _head(points[0].swept)
+    first = max(len(swept), 10)
+    heads = "".join(f"{head:>{_WIDTH}}" for head, _, _ in _COLUMNS)
+    yield f"  {swept:>{first}}{heads}  limits  status"
+    for point in points:
+        value = f"  {point.value:>{first}g}"
+        if point.objective_reduction is None and point.limits_ok is None:
+            yield f"{value}  {point.status}: {point.message}"
+            continue
+        cells = "".join(f"{write(getattr(point, key)):>{_WIDTH}}" for _, key, write in _COLUMNS)
+        limits = "kept" if point.limits_ok else "broken"
+        yield f"{value}{cells}  {limits:<6}  {point.status}"
+
+
+def _head(swept: str) -> str:
+    """Call the usual budget by a short name; any other by its own."""
+    return "budget" if swept == "joint_deviation_relative" else swept

@@ -1,0 +1,179 @@
+"""The points of a trade-off curve as jobs over an Executor.
+
+As in ``batch``: a job and its result are plain data, so that the pool of this
+machine and a cluster's executor are one code path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from des_cli.batch import load_job
+from des_cli.errors import DesError, ExitCode, FileAccessError, Problem
+from des_cli.failure import Failure
+from des_cli.job import Job
+from des_cli.model.tradeoff import TradePoint
+
+# What needs numpy is imported when a job runs, as in `batch`.
+if TYPE_CHECKING:
+    from des_cli.model.profile import Control, Profile
+    from des_cli.model.solution import Iteration
+
+
+@dataclass(frozen=True, slots=True)
+class PointJob:
+    """One optimum, or the baselines.
+
+    Parameters
+    ----------
+    job : Job
+        The profile with its settings; where it would be written means nothing here.
+    control, swept, value
+        What the settings ask for, to name the point by; empty for the baselines.
+    weights : tuple of float
+        r2 of the study's law, for the baselines.
+    """
+
+    job: Job
+    control: Control = "scalar"
+    swept: str = ""
+    value: float = 0.0
+    weights: tuple[float, ...] = ()
+
+    @property
+    def baselines(self) -> bool:
+        """Whether this is the job of the baselines."""
+        return not self.swept
+
+
+@dataclass(frozen=True, slots=True)
+class PointResult:
+    """What became of a job: its points, and why it failed if it did."""
+
+    points: tuple[TradePoint, ...]
+    log: tuple[Iteration, ...] = ()
+    failure: Failure | None = None
+
+
+def check_points(jobs: Sequence[PointJob]) -> Profile:
+    """Load each job's profile and refuse what the solver would refuse.
+
+    Returns
+    -------
+    Profile
+        Of the last job.
+
+    Raises
+    ------
+    DesError
+        The first kind of error that there is, with all problems of its kind.
+    """
+    from des_cli.pipeline import require_consistent
+
+    profile: Profile | None = None
+    errors: list[DesError] = []
+    for each in jobs:
+        try:
+            profile = load_job(each.job)
+            if not each.baselines:
+                require_consistent(profile.reduction)
+        except DesError as error:
+            errors.append(error)
+    if errors:
+        same = [p for error in errors if type(error) is type(errors[0]) for p in error.problems]
+        raise type(errors[0])(list(dict.fromkeys(same)))
+    assert profile is not None, "there is a job"
+    return profile
+
+
+def run_points(
+    jobs: Sequence[PointJob],
+    executor: Executor | None = None,
+    on_iteration: Callable[[Iteration], None] | None = None,
+) -> Iterator[PointResult]:
+    """Yield the result of every job, in the order of the jobs.
+
+    Parameters
+    ----------
+    jobs : sequence of PointJob
+    executor : Executor, optional
+        Runs them; without one they run here, one after the other.
+    on_iteration : callable, optional
+        For jobs that run here.
+    """
+    if executor is None:
+        for job in jobs:
+            yield run_point(job, on_iteration)
+        return
+    futures = [executor.submit(run_point, job) for job in jobs]
+    try:
+        for job, future in zip(jobs, futures, strict=True):
+            yield _result_of(job, future)
+    finally:
+        for future in futures:
+            future.cancel()
+
+
+def run_point(
+    job: PointJob, on_iteration: Callable[[Iteration], None] | None = None
+) -> PointResult:
+    """Compute the point of a job, or the points of the baselines.
+
+    Whatever fails becomes part of the result, so that one point does not end
+    the others; only an interruption passes through.
+    """
+    log: list[Iteration] = []
+
+    def note(iteration: Iteration) -> None:
+        log.append(iteration)
+        if on_iteration is not None:
+            on_iteration(iteration)
+
+    try:
+        from des_cli.tradeoff import baseline_points, trade_point
+
+        profile = load_job(job.job)
+        if job.baselines:
+            return PointResult(tuple(baseline_points(profile, job.weights)))
+        return PointResult((trade_point(profile, note),), tuple(log))
+    except Exception as error:
+        return _failed(job, error)
+
+
+def exit_code_of(results: Sequence[PointResult]) -> ExitCode:
+    """Return how a sweep ends.
+
+    ``DONE`` where every point that was asked for has an answer, a solution or that
+    there is none; ``NO_SOLUTION`` where none has a solution; otherwise ``FILE``, as
+    for a batch of which part failed. A bug stays a bug.
+    """
+    failures = [result.failure.exit_code for result in results if result.failure]
+    if ExitCode.BUG in failures:
+        return ExitCode.BUG
+    asked = [p for result in results for p in result.points if p.algorithm == "optimum"]
+    if not any(point.solved for point in asked):
+        return ExitCode.NO_SOLUTION
+    done = not failures and all(point.answered for point in asked)
+    return ExitCode.DONE if done else ExitCode.FILE
+
+
+def _result_of(job: PointJob, future: Future[PointResult]) -> PointResult:
+    try:
+        return future.result()
+    except BrokenExecutor:
+        lost = "its worker process died, perhaps for want of memory; try fewer --jobs"
+        return _failed(job, FileAccessError([Problem(job.job.source, lost)]))
+    except Exception as error:  # of the executor; the job itself raises none
+        return _failed(job, error)
+
+
+def _failed(job: PointJob, error: Exception) -> PointResult:
+    failure = Failure.of(error)
+    if job.baselines:
+        return PointResult((), failure=failure)
+    message = "; ".join(failure.lines)
+    point = TradePoint("optimum", job.control, job.swept, job.value, "failed", message=message)
+    return PointResult((point,), failure=failure)
