@@ -57,7 +57,7 @@ def trade_point(
     """
     run = reduce_profile(profile, on_iteration=on_iteration)
     wanted = profile.reduction
-    swept, value = wanted.budget[0] if wanted.budget else ("r2", float(wanted.r2.mean()))
+    swept, value = wanted.budget[0] if wanted.budget else ("r2", _weight(wanted.r2))
     status, message = _outcome(run)
     point = TradePoint(
         "optimum",
@@ -104,7 +104,7 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
     profile = replace(profile, reduction=wanted)
     problem = pose_problem(profile, desired)
     points = []
-    for r2 in weights or (float(wanted.r2.mean()),):
+    for r2 in weights or (_weight(wanted.r2),):
         weighed = replace(problem, r2=np.array([r2]))
         points.append(_study_point(profile, asked, weighed, r2))
     for p in CONSTANT_FACTORS:
@@ -141,6 +141,11 @@ def doubts(points: Sequence[TradePoint]) -> list[str]:
         if worse:
             found.append(f"{_name(point)} is worse than {_name(scalar)}: a local minimum")
     return found
+
+
+def _weight(r2: Floats) -> float:
+    """Return the one weight of all joints, or the mean, without rounding where equal."""
+    return float(r2[0]) if np.all(r2 == r2[0]) else float(r2.mean())
 
 
 def _name(point: TradePoint) -> str:

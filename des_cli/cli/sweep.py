@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -151,14 +151,17 @@ def _plan(
         # what a budget buys is meant inside the limits, and so is what it is compared with
         base = reduction | {"limits": reduction["limits"] or "enforce"}
 
-    def job(own: dict[str, Any]) -> Job:
-        return replace(source, settings=(*source.settings, *reduction_settings(base | own)))
+    def job(own: Mapping[str, Any]) -> Job:
+        return replace(source, settings=(*source.settings, *reduction_settings({**base, **own})))
 
     jobs = []
     for control in controls:
         for value in values:
-            own = {"method": "minimum", "algorithm": "optimum", "control": control}
-            own["r2" if r2s else "budget"] = repr(value) if r2s else f"{swept}={value!r}"
+            own: dict[str, Any] = {"method": "minimum", "algorithm": "optimum", "control": control}
+            if r2s:
+                own["r2"] = repr(value)
+            else:  # r2 is the study's then
+                own |= {"budget": f"{swept}={value!r}", "r2": None}
             jobs.append(PointJob(job(own), cast(Control, control), swept, value))
     return [*jobs, PointJob(job({}), weights=r2s or ())]
 

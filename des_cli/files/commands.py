@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
+from pydantic import TypeAdapter, ValidationError
 
 from des_cli.files.findings import Findings
 from des_cli.files.sampling import (
@@ -22,11 +24,14 @@ from des_cli.files.sampling import (
     sample_middle,
     sample_sides,
 )
-from des_cli.files.sections import Section
+from des_cli.files.schema import Command
+from des_cli.files.sections import Measure, Section
 from des_cli.files.yaml_nodes import Step
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, JointCommands
-from des_cli.units import Unit
+from des_cli.units import Unit, split_unit
+
+COMMAND: TypeAdapter[Any] = TypeAdapter(Command)
 
 _JUMP_TOLERANCE = 1e-9
 """A position jump that rounding explains, relative to 1 rad."""
@@ -76,17 +81,58 @@ def read_commands(
     t, commands : (n,) array and JointCommands or BodyRates, or None
         None after saying what is wrong.
     """
-    known = len(findings.problems)
+    given = {
+        measure.stem: (str(section.given_key(measure.stem)), section.given(measure.stem))
+        for measure in section.measures
+    }
+    assert all(each for _, each in given.values()), "the schema asks for each"
+    values = {stem: (key, each[0]) for stem, (key, each) in given.items() if each}
+    return _read(values, name, time, findings)
+
+
+def check_commands(
+    measures: Sequence[Measure],
+    values: Mapping[str, Any],
+    name: str,
+    time: tuple[float, float, float],
+    findings: Findings,
+) -> None:
+    """Say what is wrong with the other commands of a section that the schema refused.
+
+    Parameters
+    ----------
+    measures : sequence of Measure
+        What the section holds.
+    values : mapping
+        The section as it stands in the file.
+    name, time, findings
+        As of `read_commands`.
+    """
+    right = {}
+    for measure in measures:
+        keys = [key for key in measure.keys if key in values]
+        if len(keys) == 1:
+            with suppress(ValidationError):
+                right[measure.stem] = (keys[0], COMMAND.validate_python(values[keys[0]]))
+    _read(right, name, time, findings)
+
+
+def _read(
+    values: Mapping[str, tuple[str, Any]],
+    name: str,
+    time: tuple[float, float, float],
+    findings: Findings,
+) -> tuple[Floats, JointCommands | BodyRates] | None:
+    """Sample commands, given by their stem as their key and their value."""
     pieces: dict[str, tuple[Piece, ...]] = {}
     units: dict[str, Unit] = {}
     paths: dict[str, list[Step]] = {}
-    for measure in section.measures:
-        given = section.given(measure.stem)
-        assert given is not None, "the schema asks for each"
-        paths[measure.stem] = [name, str(section.given_key(measure.stem))]
-        pieces[measure.stem], units[measure.stem] = pieces_of(given[0]), given[1]
-        _check_cover(pieces[measure.stem], time, paths[measure.stem], findings)
-    if len(findings.problems) > known:
+    for stem, (key, value) in values.items():
+        parts, unit = pieces_of(value), split_unit(key)[1]
+        assert unit is not None, "the keys of a measure have units"
+        if _covers(parts, time, [name, key], findings):
+            pieces[stem], units[stem], paths[stem] = parts, unit, [name, key]
+    if not pieces:
         return None
     t = grid_with_joints(
         regular_grid(*time), (piece.start for parts in pieces.values() for piece in parts)
@@ -100,12 +146,14 @@ def read_commands(
     return None if commands is None else (t, commands)
 
 
-def _check_cover(
+def _covers(
     pieces: tuple[Piece, ...],
     time: tuple[float, float, float],
     path: list[Step],
     findings: Findings,
-) -> None:
+) -> bool:
+    """Whether segments reach from the start to the stop; say where they do not."""
+    known = len(findings.problems)
     start, stop, _ = time
     first, last = pieces[0], pieces[-1]
     slack = _COVER_TOLERANCE * max(1.0, abs(start), abs(stop))
@@ -119,6 +167,7 @@ def _check_cover(
             [*path, len(pieces) - 1],
             f"ends at {last.stop:.12g} s and leaves the time to {stop:.12g} s uncovered",
         )
+    return len(findings.problems) == known
 
 
 def _sides(
@@ -145,12 +194,12 @@ def _sample_joints(
     t: Floats,
     findings: Findings,
 ) -> JointCommands | None:
-    arm = _sides("arm", pieces, units, paths, t, findings, rates=False)
-    positions = [
-        _sides(stem, pieces, units, paths, t, findings, rates=True) for stem in ("fork", "cab")
-    ]
-    for stem, sides in zip(("fork", "cab"), positions, strict=True):
-        jump = first_jump(sides, t, _JUMP_TOLERANCE) if sides else None
+    found = {
+        stem: _sides(stem, pieces, units, paths, t, findings, rates=stem != "arm")
+        for stem in pieces
+    }
+    for stem, sides in found.items():
+        jump = first_jump(sides, t, _JUMP_TOLERANCE) if sides and stem != "arm" else None
         if jump:
             at, before, after = (jump[0], *(value / units[stem].to_si for value in jump[1:]))
             unit = units[stem].suffix
@@ -159,14 +208,14 @@ def _sample_joints(
                 f"the position jumps at t = {at:.12g} s from {before:.12g} to {after:.12g} {unit}; "
                 "no joint can follow: make both sides equal there",
             )
-    if arm is None or None in positions or findings.problems:
+    arm, *both = (found.get(stem) for stem in ("arm", "fork", "cab"))
+    if arm is None or not all(both) or findings.problems:
         return None
-    both: list[Any] = positions
     return JointCommands(
         arm_rate=np.append(arm.start, arm.end[-1]),
-        position=np.column_stack([np.append(sides.start, sides.end[-1]) for sides in both]),
-        rate_start=np.column_stack([sides.rate_start for sides in both]),
-        rate_end=np.column_stack([sides.rate_end for sides in both]),
+        position=np.column_stack([np.append(each.start, each.end[-1]) for each in both if each]),
+        rate_start=np.column_stack([each.rate_start for each in both if each]),
+        rate_end=np.column_stack([each.rate_end for each in both if each]),
     )
 
 
@@ -186,7 +235,7 @@ def _sample_body_rates(
     findings: Findings,
 ) -> BodyRates | None:
     columns: list[tuple[Floats, Floats, Floats]] = []
-    for stem in ("p", "q", "r"):
+    for stem in pieces:
         sides = _sides(stem, pieces, units, paths, t, findings, rates=False)
         if sides is None:
             continue

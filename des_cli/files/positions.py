@@ -6,13 +6,22 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 
+LEAST_SAMPLES = 4
+"""Samples up to which a piecewise parabola is not determined by its smoothness."""
+
+ROUGHEST = 4.0
+"""Total variation of the acceleration, relative to the three-point formula's, up to which
+positions count as those of a piecewise parabola. Noise, and a step of the rate, leave a
+sawtooth in its rates that is far rougher."""
+
 
 def rates_of_positions(t: Floats, position: Floats) -> Floats:
-    """Estimate rates at samples by the three-point formula.
+    """Return the rates at samples of a table of positions.
 
-    The derivative of the parabola through a sample and its two neighbours; at
-    the ends that of the parabola through the last three. Second order on any
-    grid, exact for parabolas.
+    A column whose positions are those of a motion with constant acceleration
+    over each interval, as a command table's are, gets that motion's rates. Any
+    other column is differentiated by the three-point formula: the slope of the
+    parabola through a sample and its two neighbours, second order on any grid.
 
     Parameters
     ----------
@@ -29,13 +38,53 @@ def rates_of_positions(t: Floats, position: Floats) -> Floats:
     chord = np.diff(position, axis=0) / step
     if len(t) == 2:
         return np.repeat(chord, 2, axis=0)
-    rate = np.empty_like(position)
+    rate = _three_point(step, chord)
+    if len(t) > LEAST_SAMPLES:
+        spline = _spline(step, chord, rate[0])
+        smooth = _variation(step, spline) <= ROUGHEST * _variation(step, rate)
+        rate[:, smooth] = spline[:, smooth]
+    return rate
+
+
+def _three_point(step: Floats, chord: Floats) -> Floats:
+    """Return the slopes of parabolas through three samples each."""
+    rate = np.empty((len(chord) + 1, chord.shape[1]))
     before, after = step[:-1], step[1:]
     rate[1:-1] = (after * chord[:-1] + before * chord[1:]) / (before + after)
     # The parabola's slope is linear: a chord is its slope in the middle of the interval.
     rate[0] = 2.0 * chord[0] - rate[1]
     rate[-1] = 2.0 * chord[-1] - rate[-2]
     return rate
+
+
+def _spline(step: Floats, chord: Floats, first: Floats) -> Floats:
+    """Return the rates of the piecewise parabola through the samples, (n, k).
+
+    Its rate is linear over each interval and has the chord for its mean, which
+    leaves one number open: a sawtooth +a, -a, +a, ... in the rates. It is the one
+    with which the acceleration varies least in all, a weighted median.
+    """
+    sign = np.where(np.arange(len(chord) + 1) % 2, -1.0, 1.0)[:, None]
+    folded = first + np.concatenate([0.0 * chord[:1], np.cumsum(2.0 * sign[1:] * chord, axis=0)])
+    rate = sign * folded
+    jump = np.diff(np.diff(rate, axis=0) / step, axis=0)
+    per_tooth = 2.0 * sign[:-2] * (1.0 / step[1:] + 1.0 / step[:-1])
+    tooth = _weighted_median(-jump / per_tooth, np.abs(per_tooth[:, 0]))
+    return np.asarray(rate + tooth * sign)
+
+
+def _weighted_median(values: Floats, weights: Floats) -> Floats:
+    """Return the weighted median of each column."""
+    order = np.argsort(values, axis=0)
+    below = np.cumsum(weights[order], axis=0)
+    middle = np.argmax(below >= 0.5 * below[-1], axis=0)
+    columns = np.arange(values.shape[1])
+    return np.asarray(values[order[middle, columns], columns])
+
+
+def _variation(step: Floats, rate: Floats) -> Floats:
+    """Return the total variation of the acceleration of rates at samples, (k,)."""
+    return np.sum(np.abs(np.diff(np.diff(rate, axis=0) / step, axis=0)), axis=0)
 
 
 def middles_of_samples(t: Floats, value: Floats) -> Floats:

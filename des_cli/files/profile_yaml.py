@@ -12,12 +12,14 @@ import numpy as np
 from pydantic import ValidationError
 
 from des_cli.errors import DesError, ProfileError
-from des_cli.files.commands import read_commands, read_time
+from des_cli.files.commands import check_commands, read_commands, read_time
 from des_cli.files.findings import Findings
 from des_cli.files.machine_yaml import build_machine, named_machine, parse_machine
 from des_cli.files.overrides import LABEL, apply_settings
 from des_cli.files.profile_csv import parse_samples
 from des_cli.files.reduction_section import read_reduction
+from des_cli.files.schema import BodyRates as BodyRatesSection
+from des_cli.files.schema import Joints as JointsSection
 from des_cli.files.schema import ProfileDocument, ProfileSettings
 from des_cli.files.sections import Section
 from des_cli.files.source import decode, label_of, read_source
@@ -224,8 +226,14 @@ def document_commands(
     time = None if sections["time"] is None else read_time(sections["time"], findings)
     if time is None or len(given) != 1:
         return None
-    section = sections[given[0]]
-    return None if section is None else read_commands(section, given[0], time, findings)
+    section, name = sections[given[0]], given[0]
+    if section is not None:
+        return read_commands(section, name, time, findings)
+    refused = present[name].plain()
+    if isinstance(refused, dict):
+        measures = (JointsSection if name == "joints" else BodyRatesSection).measures
+        check_commands(measures, refused, name, time, findings)
+    return None
 
 
 def _sampled(section: Any, reading: Reading, findings: Findings) -> Commands:

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky_banded, solve_banded
+from scipy.linalg import LinAlgError, cholesky_banded
+from scipy.linalg.lapack import dgbtrf, dgbtrs
 
 from des_cli.model.arrays import Floats
 
 
-def solve_block_tridiagonal(
-    diagonal: Floats, upper: Floats, lower: Floats, right: Floats
-) -> Floats | None:
-    """Solve a block tridiagonal system by banded LU with partial pivoting.
+class BlockTridiagonal:
+    """A block tridiagonal matrix, factorised by banded LU with partial pivoting.
 
     Parameters
     ----------
@@ -20,39 +19,39 @@ def solve_block_tridiagonal(
     upper, lower : (n - 1, b, b) array
         Blocks (k, k + 1) and (k + 1, k). Entries that are zero in every block
         and lie outside the band of the others cost nothing.
-    right : (n, b, r) array
-        Right-hand sides.
 
-    Returns
-    -------
-    (n, b, r) array, or None
-        None where the system is singular to working precision.
+    Raises
+    ------
+    LinAlgError
+        If the matrix is singular.
     """
-    n, b, _ = diagonal.shape
-    above = max(_reach(diagonal, 0), _reach(upper, b))
-    below = max(_reach(np.swapaxes(diagonal, 1, 2), 0), _reach(np.swapaxes(lower, 1, 2), b))
-    band = np.zeros((above + below + 1, n * b))
-    for i in range(b):
-        for j in range(b):
-            if -below <= j - i <= above:
-                band[above + i - j, j::b] = diagonal[:, i, j]
-            if b + j - i <= above:
-                band[above + i - j - b, b + j :: b] = upper[:, i, j]
-            if b + i - j <= below:
-                band[above + b + i - j, j : (n - 1) * b : b] = lower[:, i, j]
-    try:
-        solution = solve_banded(
-            (below, above),
-            band,
-            right.reshape(n * b, -1),
-            overwrite_ab=True,
-            check_finite=False,
-        )
-    except LinAlgError:
-        return None
-    if not np.all(np.isfinite(solution)):
-        return None
-    return np.asarray(solution).reshape(n, b, -1)
+
+    def __init__(self, diagonal: Floats, upper: Floats, lower: Floats) -> None:
+        n, b, _ = diagonal.shape
+        above = max(_reach(diagonal, 0), _reach(upper, b))
+        below = max(_reach(np.swapaxes(diagonal, 1, 2), 0), _reach(np.swapaxes(lower, 1, 2), b))
+        self._shape = (n, b)
+        self._band = (below, above)
+        # the first rows are room for what pivoting fills in
+        band = np.zeros((2 * below + above + 1, n * b), order="F")
+        middle = below + above
+        for i in range(b):
+            for j in range(b):
+                if -below <= j - i <= above:
+                    band[middle + i - j, j::b] = diagonal[:, i, j]
+                if b + j - i <= above:
+                    band[middle + i - j - b, b + j :: b] = upper[:, i, j]
+                if b + i - j <= below:
+                    band[middle + b + i - j, j : (n - 1) * b : b] = lower[:, i, j]
+        self._lu, self._pivots, info = dgbtrf(band, below, above, overwrite_ab=True)
+        if info != 0:
+            raise LinAlgError("singular matrix")
+
+    def solve(self, right: Floats) -> Floats:
+        """Solve for one right-hand side, (n, b)."""
+        n, b = self._shape
+        solution, _ = dgbtrs(self._lu, *self._band, right.reshape(n * b), self._pivots)
+        return np.asarray(solution).reshape(n, b)
 
 
 def is_positive_definite(diagonal: Floats, upper: Floats) -> bool:

@@ -19,7 +19,7 @@ from des_cli.reduction.interior import Outcome
 from des_cli.reduction.measures import measure_of, spent_on
 from des_cli.reduction.optimum import FAR, NEAR, make_solution
 from des_cli.reduction.problem import Problem
-from des_cli.reduction.search import COARSE, TOLERANCE, Search
+from des_cli.reduction.search import TOLERANCE, Search
 from des_cli.reduction.transcription import Measure, Transcription
 
 REGULARISATION = 2e-3
@@ -29,10 +29,16 @@ c' R1 c: enough that the factors are determined everywhere, and no more."""
 TARGET = 0.999
 """Share of the squared budget that the search aims at."""
 
-SPENT = 0.997
-"""Share of the squared budget that counts as spent."""
+SPENT, PATIENCE, IMPATIENCE = 0.997, 4, 0.02
+"""Share of the squared budget that counts as spent; after PATIENCE prices it falls by
+IMPATIENCE with each further one. Between two local minima what is spent jumps with the
+price, and the gap cannot be closed by prices."""
+
+EACH_PRICE = 200
+"""Newton steps at one price on the way, at the most: most take a tenth of that."""
 
 OTHER_START = 150  # Newton steps that another start may take
+COARSE = 1e-4  # tolerance on the way
 MOST_PRICES = 20
 WIDEST_STEP = 30.0  # factor between two prices while nothing brackets the right one
 NOTHING_LEFT = 1e-3
@@ -52,9 +58,7 @@ class _Priced:
     outcome: Outcome
 
 
-def spend_budget(
-    problem: Problem, metric: BudgetMetric, budget: float, search: Search
-) -> Solution:
+def spend_budget(problem: Problem, metric: BudgetMetric, budget: float, search: Search) -> Solution:
     """Find the most reduction that a budget buys.
 
     Parameters
@@ -104,7 +108,10 @@ def _search_price(grid: Transcription, measure: Measure, search: Search) -> _Pri
     while len(tries) < MOST_PRICES and search.left:
         inside = min((t for t in tries if t.spent <= 1.0), key=lambda t: t.price, default=None)
         outside = max((t for t in tries if t.spent > 1.0), key=lambda t: t.price, default=None)
-        if inside and (inside.spent >= SPENT or _rest(inside) <= NOTHING_LEFT * unit):
+        if inside and (
+            inside.spent >= SPENT - IMPATIENCE * max(0, len(tries) - PATIENCE)
+            or _rest(inside) <= NOTHING_LEFT * unit
+        ):
             break
         if inside and outside and inside.price < outside.price * (1.0 + CLOSE):
             break
@@ -153,7 +160,8 @@ def _at_price(
     search: Search,
 ) -> _Priced:
     grid.priced = [(price, measure)]
-    outcome = search.minimise(grid, x, tolerance, barrier)
+    most = EACH_PRICE if tolerance > TOLERANCE else None
+    outcome = search.minimise(grid, x, tolerance, barrier, most=most)
     return _Priced(price, spent_on(measure, outcome.x), outcome)
 
 

@@ -18,8 +18,9 @@ from des_cli.model.machine import Machine
 from des_cli.reduction.points import Indices
 from des_cli.reduction.rates import Rates
 
-MARGIN = 1e-9
-"""Relative distance that the solver keeps from a machine limit, against rounding."""
+MARGIN = 1e-6
+"""Relative distance that the solver keeps from a machine limit: room for the rounding of
+whoever differentiates a table of positions twice."""
 
 
 class Rows(ABC):

@@ -15,18 +15,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from des_cli.model.arrays import Floats
-from des_cli.model.machine import Machine
+from des_cli.model.arrays import Flags, Floats
+from des_cli.model.machine import JOINTS, Machine
 from des_cli.model.motion import Motion
 from des_cli.reduction.constraints import limit_rows
 from des_cli.reduction.interior import Outcome, minimise
-from des_cli.reduction.limits import measure_peaks
+from des_cli.reduction.limits import find_violations, measure_peaks
 from des_cli.reduction.rates import DesiredRates
 from des_cli.reduction.transcription import Expansion
 
 TAU = 0.05
 """Time [s] that weighs a rate error against an angle error: about what the DES's
 cab needs to round a corner."""
+
+STRAIGHT = 1e-4
+"""Difference of an angle [rad] from the integral of its rates that is the quadrature's
+alone: a joint that keeps its limits is then left as it is."""
 
 TOLERANCE = 1e-9
 MAX_ITERATIONS = 200
@@ -42,7 +46,7 @@ the reduction no room: a scalar factor would have to stay at one or below, for
 every joint, wherever one joint turns a corner."""
 
 
-def nearest_executable(machine: Machine, desired: Motion) -> tuple[Motion, Outcome]:
+def nearest_executable(machine: Machine, desired: Motion) -> tuple[Motion, Outcome | None]:
     """Return the nearest motion inside the machine's limits, and how it was found.
 
     Parameters
@@ -55,19 +59,44 @@ def nearest_executable(machine: Machine, desired: Motion) -> tuple[Motion, Outco
     -------
     motion : Motion
         Its angles are the integrals of its rates, which do not step.
-    outcome : Outcome
-        Not ``converged`` where no motion from the desired start keeps the limits.
+    outcome : Outcome, optional
+        Not ``converged`` where no motion from the desired start keeps the limits;
+        None where the desired motion keeps them itself.
     """
+    straight = _straighten(desired)
+    kept = _keeps(machine, desired, straight)
+    if np.all(kept):
+        return straight, None
     program = _Nearest(_eased(machine, desired), desired)
     start = np.hstack([desired.angle, program.rate])
     outcome = minimise(
         program, start, tolerance=TOLERANCE, max_iterations=MAX_ITERATIONS, barrier=1.0
     )
-    rate = outcome.x[:, 3:]
-    step = desired.step[:, None]
-    increment = np.cumsum(0.5 * step * (rate[:-1] + rate[1:]), axis=0)
+    rate = np.where(kept, desired.rate, outcome.x[:, 3:])
+    return _integrate(desired, rate), outcome
+
+
+def _integrate(desired: Motion, rate: Floats) -> Motion:
+    """Return the motion from the desired start with rates that are linear between samples."""
+    increment = np.cumsum(0.5 * desired.step[:, None] * (rate[:-1] + rate[1:]), axis=0)
     angle = desired.angle[0] + np.vstack([np.zeros(3), increment])
-    return Motion(desired.t, angle, rate[:-1], rate[1:]), outcome
+    return Motion(desired.t, angle, rate[:-1], rate[1:])
+
+
+def _straighten(desired: Motion) -> Motion:
+    """Return the desired motion with its rates linear between samples, and its angles theirs."""
+    return _integrate(desired, desired.rate)
+
+
+def _keeps(machine: Machine, desired: Motion, straight: Motion) -> Flags:
+    """Return the joints, (3,), whose desired motion is executable as it stands."""
+    broken = {
+        violation.joint
+        for motion in (desired, straight)
+        for violation in find_violations(machine, motion, "desired")
+    }
+    near = np.max(np.abs(straight.angle - desired.angle), axis=0) <= STRAIGHT
+    return near & np.array([joint not in broken for joint in JOINTS])
 
 
 def _eased(machine: Machine, desired: Motion) -> Machine:

@@ -7,8 +7,7 @@ in the number of samples. Without inequalities it is Newton's method with a line
 search.
 
 The method is that of Waechter and Biegler (Mathematical Programming 106, 2006)
-with a line search on an l1 merit function (Nocedal and Wright, Numerical
-Optimization, chapter 19). Where the exact Hessian is not convex on the
+with their filter line search. Where the exact Hessian is not convex on the
 dynamics, its curvature part is taken in until it is; that is found out by a
 banded Cholesky factorisation, where a general sparse code would count the
 pivots of an indefinite one.
@@ -21,11 +20,12 @@ from dataclasses import dataclass
 from typing import Literal, Protocol, TypeAlias
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.solution import Iteration
-from des_cli.reduction.banded import is_positive_definite, solve_block_tridiagonal
 from des_cli.reduction.constraints import Rows
+from des_cli.reduction.newton_system import NewtonSystem, transposed
 from des_cli.reduction.transcription import Expansion
 
 # Fraction of the way to the boundary that a step may take, at the least
@@ -36,8 +36,10 @@ BOUNDARY_FRACTION = 0.99
 BARRIER_FACTOR, BARRIER_POWER, BARRIER_MARGIN = 0.2, 1.5, 10.0
 # Slacks start at least this far inside (rows are scaled to bounds of about 1).
 FIRST_SLACK = 1e-2
-# Sufficient decrease in the line search (Armijo).
-ARMIJO = 1e-4
+# Sufficient decrease in the line search (Armijo), and the filter's margins and
+# exponents (ibid., section 2.3).
+ARMIJO, FILTER_MARGIN, STEEP, SMALL = 1e-4, 1e-5, 2.3, 1.1
+WORST_VIOLATION, SMALL_VIOLATION = 1e4, 1e-4
 # The line search gives up below this step.
 SHORTEST_STEP = 1e-10
 # Where the exact Hessian is not convex on the dynamics, its curvature part is
@@ -50,9 +52,6 @@ SHARE_DECAY, LEAST_SHARE, SHARE_RECOVERY = 0.7, 0.05, 2.0
 SHIFTS = (0.0, 1e-6, 1e-4, 1e-2, 1.0, 1e2)
 # Errors within which a result that misses the tolerance may still be used.
 ACCEPTABLE = 1e-6
-# Weight on the squared dynamics, relative to the problem's scale, in the test
-# for convexity: large against any negative curvature, small against 1e16.
-DYNAMICS_WEIGHT = 1e6
 
 Report: TypeAlias = Callable[[Iteration], None]
 Ending: TypeAlias = Literal["converged", "acceptable", "iteration-limit", "diverged"]
@@ -195,6 +194,26 @@ class _Local:
     dynamics: tuple[Floats, Floats]
 
 
+@dataclass(frozen=True)
+class _Step:
+    """A step of everything that moves, and how far it may go."""
+
+    x: Floats
+    multiplier: Floats
+    slacks: list[Floats]
+    duals: list[Floats]
+    longest: float
+    longest_dual: float
+
+
+@dataclass(frozen=True)
+class _Point:
+    """What a line search weighs: total violation of the constraints, and cost."""
+
+    violation: float
+    cost: float
+
+
 class _Method:
     """The state of one minimisation."""
 
@@ -208,13 +227,17 @@ class _Method:
         self.unit = program.scale * float(program.weight.sum()) / self.n
         self.mu = barrier * self.unit
         self.least_mu = 0.1 * tolerance * self.unit
-        self.penalty = 0.0
+        self.filter: list[_Point] = []
         self.share = 1.0
         self.sides: list[_Side] = []
         for rows in program.rows:
             value = rows.value(self.x)
             self.sides.append(_Side.at(1.0, value, self.mu))
             self.sides.append(_Side.at(-1.0, value, self.mu))
+
+        first = _violation(program.defect(self.x), self._excess(self.x))
+        self.worst_violation = WORST_VIOLATION * max(1.0, first)
+        self.small_violation = SMALL_VIOLATION * max(1.0, first)
 
     def run(self, max_iterations: int, first_number: int, on_iteration: Report | None) -> Outcome:
         log: list[Iteration] = []
@@ -297,19 +320,30 @@ class _Method:
                 return
             lower = min(BARRIER_FACTOR * relative, relative**BARRIER_POWER)
             self.mu = max(self.least_mu, self.unit * lower)
-            self.penalty = 0.0
+            self.filter = []
 
     # ------------------------------------------------------------------ one step
     def _advance(self, local: _Local) -> float | None:
         """Take one step; return its length, or None where none is acceptable."""
-        convex, bend, across, force = self._newton(local)
+        convex, bend, across = self._blocks(local)
+        size = self.program.scale * float(self.program.weight.max())
         for share, shift in self._convexities():
-            direction = self._direction(local, convex + share * bend, across, force, shift)
-            if direction is not None:
-                length = self._search(local, *direction)
-                if length is not None:
-                    self.share = max(share, LEAST_SHARE)
-                    return length
+            hessian = convex + share * bend
+            if shift:
+                diagonal = np.arange(self.width)
+                hessian[:, diagonal, diagonal] += (
+                    shift * self.program.scale * self.program.weight[:, None]
+                )
+            system = NewtonSystem(hessian, across, *local.dynamics, self.program.pinned)
+            if not system.is_convex(size):
+                continue
+            try:
+                length = self._search(local, system)
+            except LinAlgError:
+                continue
+            if length is not None:
+                self.share = max(share, LEAST_SHARE)
+                return length
         return None
 
     def _convexities(self) -> Iterator[tuple[float, float]]:
@@ -321,114 +355,143 @@ class _Method:
         for shift in SHIFTS:
             yield 0.0, shift
 
-    def _newton(self, local: _Local) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return the Newton system without the dynamics.
+    def _blocks(self, local: _Local) -> tuple[Floats, Floats, Floats]:
+        """Return the convex part of the blocks (k, k), what bends them, and blocks (k, k + 1).
 
-        Slacks and their multipliers are eliminated. First the convex part of the
-        blocks (k, k), then what bends them, the blocks (k, k + 1), and the force.
+        Slacks and their multipliers are eliminated; the dynamics are not in it.
         """
         hessian = local.expansion.hessian.copy()
         bends = [local.expansion.bend, self.program.defect_curvature(self.x, self.multiplier)]
         across = np.zeros((self.n - 1, self.width, self.width))
         if local.expansion.across is not None:
             across += local.expansion.across
-        force = local.expansion.gradient.copy()
         for index, (rows, (at_node, at_next)) in enumerate(
             zip(self.program.rows, local.rows, strict=True)
         ):
-            pair = self.sides[2 * index : 2 * index + 2]
-            stiffness = (pair[0].stiffness() + pair[1].stiffness())[:, :, None]
-            push = sum(
-                side.push(self.mu, local.excess[2 * index + which])
-                for which, side in enumerate(pair)
-            )
-            self._push(force, index, (at_node, at_next), np.asarray(push))
-            hessian[rows.node] += _transposed(at_node * stiffness) @ at_node
+            upper, lower = self.sides[2 * index : 2 * index + 2]
+            stiffness = (upper.stiffness() + lower.stiffness())[:, :, None]
+            hessian[rows.node] += transposed(at_node * stiffness) @ at_node
             if at_next is not None:
-                hessian[rows.node + 1] += _transposed(at_next * stiffness) @ at_next
-                across[rows.node] += _transposed(at_node * stiffness) @ at_next
+                hessian[rows.node + 1] += transposed(at_next * stiffness) @ at_next
+                across[rows.node] += transposed(at_node * stiffness) @ at_next
             bends.append(rows.curvature(self.x, self._net_dual(index)))
         bend = sum((b for b in bends if b is not None), start=np.zeros_like(hessian))
-        return hessian, bend, across, force
+        return hessian, bend, across
 
-    def _direction(
-        self, local: _Local, hessian: Floats, across: Floats, force: Floats, shift: float
-    ) -> tuple[Floats, Floats] | None:
-        """Solve the Newton system for the step in x and the new multipliers.
+    def _force(self, local: _Local, excess: list[Floats]) -> Floats:
+        """Return the gradient of the barrier problem, slacks eliminated, (n, 3 + m)."""
+        force = local.expansion.gradient.copy()
+        for index, jacobian in enumerate(local.rows):
+            pair = range(2 * index, 2 * index + 2)
+            push = sum(self.sides[which].push(self.mu, excess[which]) for which in pair)
+            self._push(force, index, jacobian, np.asarray(push))
+        return force
 
-        Returns None where the system is not convex on the dynamics.
+    def _search(self, local: _Local, system: NewtonSystem) -> float | None:
+        """Move along the Newton direction by a backtracking filter line search.
+
+        Where the first step is refused for what the linearisation misses of the
+        constraints, it is corrected once to second order.
         """
-        n, width, program = self.n, self.width, self.program
-        free = ~program.pinned
-        left, ahead = (
-            block * mask[:, None, :]
-            for block, mask in zip(local.dynamics, (free[:-1], free[1:]), strict=True)
+        step = self._step(local, system, local.defect, local.excess)
+        pairs = list(zip(self.sides, step.slacks, strict=True))
+        slope = float(np.sum(local.expansion.gradient * step.x)) - self.mu * sum(
+            float(np.sum(d / s.slack)) for s, d in pairs
         )
-        here = hessian * free[:, :, None] * free[:, None, :]
-        next_ = across * free[:-1, :, None] * free[1:, None, :]
-        ends = np.arange(width)
-        here[:, ends, ends] += program.pinned + shift * program.scale * program.weight[:, None]
-        weight = DYNAMICS_WEIGHT * program.scale * float(program.weight.max())
-        squared = here.copy()
-        squared[:-1] += weight * _transposed(left) @ left
-        squared[1:] += weight * _transposed(ahead) @ ahead
-        if not is_positive_definite(squared, next_ + weight * _transposed(left) @ ahead):
-            return None
-        block = width + 3
-        diagonal = np.zeros((n, block, block))
-        upper, lower = np.zeros((n - 1, block, block)), np.zeros((n - 1, block, block))
-        diagonal[:, :width, :width] = here
-        diagonal[:-1, width:, :width], diagonal[:-1, :width, width:] = left, _transposed(left)
-        diagonal[-1, width:, width:] = np.eye(3)  # the last sample begins no interval
-        upper[:, :width, :width], lower[:, :width, :width] = next_, _transposed(next_)
-        upper[:, width:, :width], lower[:, :width, width:] = ahead, _transposed(ahead)
-        right = np.zeros((n, block, 1))
-        right[:, :width, 0] = -force * free
-        right[:-1, width:, 0] = -local.defect
-        solution = solve_block_tridiagonal(diagonal, upper, lower, right)
-        if solution is None:
-            return None
-        return solution[:, :width, 0], solution[:-1, width:, 0]
-
-    def _search(self, local: _Local, move: Floats, multiplier: Floats) -> float | None:
-        """Move along a direction by a backtracking search on an l1 merit function."""
-        slack_moves = self._slack_moves(local, move)
-        pairs = list(zip(self.sides, slack_moves, strict=True))
-        fraction = max(BOUNDARY_FRACTION, 1.0 - self.mu / self.unit)
-        length = min((_boundary(s.slack, d, fraction) for s, d in pairs), default=1.0)
-        dual_moves = [side.dual_move(self.mu, d) for side, d in pairs]
-        duals = [s.dual + d for s, d in zip(self.sides, dual_moves, strict=True)]
-        self.penalty = max(self.penalty, 1.1 * max(map(_largest, [multiplier, *duals])))
-        slope = (
-            float(np.sum(local.expansion.gradient * move))
-            - self.mu * sum(float(np.sum(d / s.slack)) for s, d in pairs)
-            - self.penalty * _violation(local.defect, local.excess)
+        here = _Point(
+            _violation(local.defect, local.excess), self._barrier_cost(local.expansion.cost)
         )
-        # below this the merit function's own rounding decides
-        noise = 1e-13 * (abs(local.expansion.cost) + self.unit + self.penalty)
-        if slope > noise:
+        # below this the cost's own rounding decides
+        noise = 1e-13 * (abs(here.cost) + self.unit)
+        if here.violation <= noise / self.unit * 1e-3 and slope > noise:
             return None
-        start = self._merit(local.expansion.cost, local.defect, local.excess)
-        slacks = [side.slack for side in self.sides]
+        old = [side.slack for side in self.sides]
+        length = step.longest
         while length >= SHORTEST_STEP:
-            x = self.x + length * move
-            for side, slack, d in zip(self.sides, slacks, slack_moves, strict=True):
-                side.slack = slack + length * d
-            merit = self._merit(self.program.cost(x), self.program.defect(x), self._excess(x))
-            if merit <= start + ARMIJO * length * slope + noise:
-                self.x = x
-                self.multiplier = self.multiplier + length * (multiplier - self.multiplier)
-                moves = list(zip(self.sides, dual_moves, strict=True))
-                along = min((_boundary(s.dual, d, fraction) for s, d in moves), default=1.0)
-                for side, d in moves:
-                    side.dual = side.dual + along * d
-                return length
+            defect, excess, there = self._trial(step, length, old)
+            if self._accepts(here, there, length, slope, noise):
+                return self._take(step, length)
+            if length == step.longest and there.violation >= here.violation > 0.0:
+                more_defect = length * local.defect + defect
+                more_excess = [length * e + f for e, f in zip(local.excess, excess, strict=True)]
+                self._reset_slacks(old)
+                corrected = self._step(local, system, more_defect, more_excess)
+                there = self._trial(corrected, corrected.longest, old)[2]
+                if self._accepts(here, there, corrected.longest, slope, noise):
+                    return self._take(corrected, corrected.longest)
             length *= 0.5
-        for side, slack in zip(self.sides, slacks, strict=True):
-            side.slack = slack
+        self._reset_slacks(old)
         return None
 
-    def _slack_moves(self, local: _Local, move: Floats) -> list[Floats]:
+    def _accepts(
+        self, here: _Point, there: _Point, length: float, slope: float, noise: float
+    ) -> bool:
+        """Return whether a trial is acceptable; extend the filter if it is on trust.
+
+        Waechter and Biegler, section 2.3: a trial must not be worse in both cost and
+        violation than any point of the filter. Where the violation is small and the
+        cost falls steeply, the cost must fall enough; elsewhere one of the two must.
+        """
+        if not np.isfinite(there.cost) or there.violation > self.worst_violation:
+            return False
+        if any(
+            there.violation >= (1.0 - FILTER_MARGIN) * old.violation
+            and there.cost >= old.cost - FILTER_MARGIN * old.violation
+            for old in self.filter
+        ):
+            return False
+        steep = slope < 0.0 and length * (-slope / self.unit) ** STEEP > here.violation**SMALL
+        if here.violation <= self.small_violation and steep:
+            return there.cost <= here.cost + ARMIJO * length * slope + noise
+        better = (
+            there.violation <= (1.0 - FILTER_MARGIN) * here.violation
+            or there.cost <= here.cost - FILTER_MARGIN * here.violation + noise
+        )
+        if better:
+            self.filter.append(here)
+        return better
+
+    def _reset_slacks(self, slacks: list[Floats]) -> None:
+        for side, slack in zip(self.sides, slacks, strict=True):
+            side.slack = slack
+
+    def _step(
+        self, local: _Local, system: NewtonSystem, defect: Floats, excess: list[Floats]
+    ) -> _Step:
+        """Return the step that removes a defect and an excess to first order."""
+        move, multiplier = system.solve(self._force(local, excess), defect)
+        slacks = self._slack_moves(local, move, excess)
+        duals = [s.dual_move(self.mu, d) for s, d in zip(self.sides, slacks, strict=True)]
+        fraction = max(BOUNDARY_FRACTION, 1.0 - self.mu / self.unit)
+        pairs = list(zip(self.sides, slacks, duals, strict=True))
+        return _Step(
+            x=move,
+            multiplier=multiplier,
+            slacks=slacks,
+            duals=duals,
+            longest=min((_boundary(s.slack, d, fraction) for s, d, _ in pairs), default=1.0),
+            longest_dual=min((_boundary(s.dual, d, fraction) for s, _, d in pairs), default=1.0),
+        )
+
+    def _trial(
+        self, step: _Step, length: float, old: list[Floats]
+    ) -> tuple[Floats, list[Floats], _Point]:
+        """Set the slacks of a trial; return its defect, its excess, and what it is worth."""
+        x = self.x + length * step.x
+        for side, slack, d in zip(self.sides, old, step.slacks, strict=True):
+            side.slack = slack + length * d
+        defect, excess = self.program.defect(x), self._excess(x)
+        there = _Point(_violation(defect, excess), self._barrier_cost(self.program.cost(x)))
+        return defect, excess, there
+
+    def _take(self, step: _Step, length: float) -> float:
+        self.x = self.x + length * step.x
+        self.multiplier = self.multiplier + length * (step.multiplier - self.multiplier)
+        for side, d in zip(self.sides, step.duals, strict=True):
+            side.dual = side.dual + step.longest_dual * d
+        return length
+
+    def _slack_moves(self, local: _Local, move: Floats, excess: list[Floats]) -> list[Floats]:
         """Return the step of every slack that belongs to a step of x."""
         moves: list[Floats] = []
         for index, (rows, (at_node, at_next)) in enumerate(
@@ -438,17 +501,13 @@ class _Method:
             if at_next is not None:
                 change = change + (at_next @ move[rows.node + 1, :, None])[:, :, 0]
             for which in (2 * index, 2 * index + 1):
-                moves.append(self.sides[which].slack_move(change, local.excess[which]))
+                moves.append(self.sides[which].slack_move(change, excess[which]))
         return moves
 
-    def _merit(self, cost: float, defect: Floats, excess: list[Floats]) -> float:
+    def _barrier_cost(self, cost: float) -> float:
+        """Return the cost of the barrier problem at the present slacks."""
         barrier = sum(float(np.sum(np.log(side.slack))) for side in self.sides)
-        merit = cost - self.mu * barrier + self.penalty * _violation(defect, excess)
-        return merit if np.isfinite(merit) else np.inf
-
-
-def _transposed(blocks: Floats) -> Floats:
-    return np.swapaxes(blocks, 1, 2)
+        return cost - self.mu * barrier
 
 
 def _apply(jacobian: Floats, dual: Floats) -> Floats:

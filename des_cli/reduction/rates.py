@@ -13,11 +13,11 @@ import numpy as np
 from des_cli.kinematics.chain import Chain
 from des_cli.model.arrays import Floats
 
-DAMPING_BELOW = 0.1
+DAMPING_BELOW = 0.4
 """|det J| below which the adapted inverse is damped (on the DES, 6 degrees from
 the singularity)."""
 
-DAMPING = 0.07
+DAMPING = 0.3
 """Damping factor on the singularity itself."""
 
 COMPLEX_STEP = 1e-30

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -203,11 +204,9 @@ def test_a_profile_on_stdin(invoke, small: str, tmp_path) -> None:
 def test_the_plot_is_written_beside_the_points(invoke, small: str, tmp_path) -> None:
     args = ("sweep", small, "--r2s", "2,1", "--plot", "curve.png", "-o", "points.csv")
     assert invoke(*args).exit_code == 0
-    assert (
-        Image.open(tmp_path / "curve.png")
-        .info["Title"]
-        .endswith("small, r1 = 0, 2, 0 in report axes")
-    )
+    with Image.open(tmp_path / "curve.png") as image:
+        title = image.info["Title"]
+    assert title.endswith("small, r1 = 0, 2, 0 in report axes")
     assert (tmp_path / "points.csv").is_file()
 
 
@@ -277,6 +276,14 @@ def test_a_faulty_profile_is_told_once(invoke, small: str) -> None:
     result = invoke("sweep", small, "--set", "time.step_s=-1")
     assert (result.exit_code, result.stdout) == (3, "")
     assert len(result.stderr.splitlines()) == 1
+
+
+def test_the_page_of_commands_names_every_column() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "cli.md").read_text(encoding="utf-8")
+    section = page.partition("\n## sweep\n")[2].partition("\n## ")[0]
+    table = section.partition("| column |")[2]
+    first = [line.split("|")[1] for line in table.splitlines() if line.startswith("| `")]
+    assert [name for cell in first for name in re.findall(r"`(\w+)`", cell)] == list(COLUMNS)
 
 
 def test_quiet_leaves_the_data_alone(invoke, small: str) -> None:
