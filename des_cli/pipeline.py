@@ -72,7 +72,7 @@ def reduce_profile(
         solution=solution,
         before=before,
         after=after,
-        checks=verify(posed, solution, wanted),
+        checks=verify(posed, solution, wanted) if solution.usable else (),
         violations=violations,
         metrics=metrics,
         notices=tuple(metrics["notices"]),

@@ -79,6 +79,25 @@ def test_a_figure_is_of_its_run(synthetic_run: MakeRun) -> None:
     assert [name for name in ours if ours[name] == theirs[name]] == ["adjoint"]
 
 
+@pytest.mark.parametrize(
+    ("section", "change", "figures"),
+    [
+        ("solver", {"status": "acceptable", "converged": False}, set(CAPTIONS)),
+        ("solver", {"budget": {"joint_deviation_relative": 0.13}}, {"deviation"}),
+        ("executable", {"joint_change_max_rad": {"cab": 0.0123}}, {"commands"}),
+        ("executable", {"joint_change_max_rad": {"cab": 1e-6}}, set()),
+    ],
+)
+def test_standing_budget_and_changes_are_on_the_figures_they_belong_to(
+    synthetic_run: MakeRun, section: str, change: dict[str, object], figures: set[str]
+) -> None:
+    run = synthetic_run(11)
+    columns = trajectory_columns(run)
+    plain = draw_plots(columns, run.metrics)
+    changed = draw_plots(columns, run.metrics | {section: run.metrics[section] | change})
+    assert {name for name in plain if plain[name] != changed[name]} == figures
+
+
 def test_pyplot_stays_out(synthetic_run: MakeRun) -> None:
     run = synthetic_run(11)
     draw_plots(trajectory_columns(run), run.metrics)
@@ -99,6 +118,11 @@ def test_metrics_of_a_stranger_do_not_stop_the_figures(synthetic_run: MakeRun) -
         {},
         {"solver": 1, "coriolis": []},
         {"solver": {"axes": ["report"], "r1": "two"}, "coriolis": {"bb3": {"reduction": "much"}}},
+        {
+            "solver": {"status": "$x_$", "converged": False, "budget": {"$a_$": 1.0}},
+            "fidelity": {"$a_$": 2.0},
+            "executable": {"joint_change_max_rad": {"$\\q$": 2.0, "b": "c"}},
+        },
     ):
         assert list(draw_plots(columns, metrics)) == list(CAPTIONS)
 

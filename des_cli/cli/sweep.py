@@ -32,7 +32,7 @@ from des_cli.errors import ExitCode, FileAccessError, Problem
 from des_cli.job import STANDARD_STREAM, Job, TableFormat
 
 if TYPE_CHECKING:
-    from des_cli.model.profile import Profile
+    from des_cli.model.profile import Control, Profile
     from des_cli.model.tradeoff import TradePoint
     from des_cli.sweep import PointJob, PointResult
 
@@ -142,7 +142,6 @@ def _plan(
     """Return a job for each point, and one for the baselines."""
     from dataclasses import replace
 
-    from des_cli.model.profile import Control
     from des_cli.sweep import PointJob
 
     swept, values = ("r2", r2s) if r2s else budgets or (DEFAULT_METRIC, DEFAULT_BUDGETS)
@@ -162,7 +161,7 @@ def _plan(
                 own["r2"] = repr(value)
             else:  # r2 is the study's then
                 own |= {"budget": f"{swept}={value!r}", "r2": None}
-            jobs.append(PointJob(job(own), cast(Control, control), swept, value))
+            jobs.append(PointJob(job(own), cast("Control", control), swept, value))
     return [*jobs, PointJob(job({}), weights=r2s or ())]
 
 

@@ -39,7 +39,11 @@ def read_budgets(
 
 def _require_metric(metric: str) -> None:
     from des_cli.files.wording import did_you_mean, one_of
-    from des_cli.model.profile import BudgetMetric
+    from des_cli.pool import single_blas_thread
+
+    # This imports numpy, whose number of threads is settled by that.
+    with single_blas_thread():
+        from des_cli.model.profile import BudgetMetric
 
     known = get_args(BudgetMetric)
     if metric not in known:

@@ -121,7 +121,7 @@ class Run:
             ``enforce``.
         """
         name = self.profile.name
-        if self.solution.status not in ("converged", "acceptable"):
+        if not self.solution.usable:
             raise NoSolutionError(
                 [Problem(name, f"{self.solution.status}: {self.solution.message}")]
             )

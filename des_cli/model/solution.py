@@ -76,6 +76,11 @@ class Solution:
         freeze(self, "adjoint", (n, 3))
 
     @property
+    def usable(self) -> bool:
+        """Whether the solution may be released if its checks hold."""
+        return self.status in ("converged", "acceptable")
+
+    @property
     def converged(self) -> bool:
         """Whether the solution is optimal to the solver's tolerance."""
         return self.status == "converged"

@@ -167,9 +167,8 @@ def sheet(
 def stamp(figure: Figure, words: str) -> None:
     """Write a warning under the title."""
     total = figure.get_figheight()
-    figure.text(
-        0.12 / WIDTH, 1 - 0.41 / total, words, va="center", ha="left", fontsize=9, color=VERMILION
-    )
+    look: dict[str, Any] = {"fontsize": 9, "color": VERMILION, "parse_math": False}
+    figure.text(0.12 / WIDTH, 1 - 0.41 / total, words, va="center", ha="left", **look)
 
 
 def draw(

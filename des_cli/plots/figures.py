@@ -233,4 +233,5 @@ def _share_taken_off(metrics: Metrics, key: str) -> str:
 
 def _note(panel: Any, words: str) -> None:
     # no mathematics: a stranger's words may hold dollar signs
-    panel.set_title(words.replace("$", r"\$"), loc="right", fontsize=8, color="#5A5A5A", pad=3)
+    look: dict[str, Any] = {"fontsize": 8, "color": "#5A5A5A", "parse_math": False}
+    panel.set_title(words, loc="right", pad=3, **look)

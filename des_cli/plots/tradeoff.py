@@ -57,7 +57,8 @@ def draw_tradeoff(points: Sequence[TradePoint], about: str) -> bytes:
     with style():
         figure = _figure(points, title)
         shown = about if len(about) <= _LONGEST else f"{about[: _LONGEST - 1]}…"
-        figure.axes[0].set_title(shown, loc="right", fontsize=8, color="#5A5A5A", pad=3)
+        noted = figure.axes[0].set_title(shown, loc="right", fontsize=8, color="#5A5A5A", pad=3)
+        noted.set_parse_math(False)
         return png(figure, f"{title}: {about}")
 
 

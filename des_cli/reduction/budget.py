@@ -106,26 +106,21 @@ def _search_price(grid: Transcription, measure: Measure, search: Search) -> _Pri
     unit = max(grid.cost(grid.desired), 1e-12)
     tries = [_at_price(grid, measure, unit, grid.desired, FAR, COARSE, search)]
     while len(tries) < MOST_PRICES and search.left:
-        inside = min((t for t in tries if t.spent <= 1.0), key=lambda t: t.price, default=None)
+        within = [t for t in tries if t.spent <= 1.0]
+        inside = min(within, key=lambda t: t.price, default=None)
         outside = max((t for t in tries if t.spent > 1.0), key=lambda t: t.price, default=None)
-        if inside and (
-            inside.spent >= SPENT - IMPATIENCE * max(0, len(tries) - PATIENCE)
-            or _rest(inside) <= NOTHING_LEFT * unit
-        ):
+        enough = SPENT - IMPATIENCE * max(0, len(tries) - PATIENCE)
+        if inside and (inside.spent >= enough or _rest(inside) <= NOTHING_LEFT * unit):
             break
         if inside and outside and inside.price < outside.price * (1.0 + CLOSE):
             break
-        price = _next_price(tries, inside, outside)
         # from the motion that spends most inside the budget: on one branch of local
         # minima what is spent follows the price without jumps
-        x = (
-            max(allowed, key=lambda t: t.spent).outcome.x
-            if (allowed := [t for t in tries if t.spent <= 1.0])
-            else tries[-1].outcome.x
-        )
-        tries.append(_at_price(grid, measure, price, x, WARM, COARSE, search))
-    allowed = [t for t in tries if t.spent <= 1.0] or tries
-    return _polish(grid, measure, max(allowed, key=lambda t: t.spent), search)
+        known = max(within, key=lambda t: t.spent, default=tries[-1])
+        price = _next_price(tries, inside, outside)
+        tries.append(_at_price(grid, measure, price, known.outcome.x, WARM, COARSE, search))
+    best = max((t for t in tries if t.spent <= 1.0), key=lambda t: t.spent, default=tries[-1])
+    return _polish(grid, measure, best, search)
 
 
 def _rest(tried: _Priced) -> float:
@@ -134,7 +129,7 @@ def _rest(tried: _Priced) -> float:
 
 
 def _next_price(tries: list[_Priced], inside: _Priced | None, outside: _Priced | None) -> float:
-    """Return the next price: a secant in the logarithms, kept inside the bracket if there is one."""
+    """Return the next price: a secant in the logarithms, inside the bracket if there is one."""
     last = tries[-1]
     slope = -1.25  # of log spent over log price, until two prices tell
     if len(tries) > 1 and tries[-2].price != last.price:

@@ -96,7 +96,7 @@ def _keeps(machine: Machine, desired: Motion, straight: Motion) -> Flags:
         for violation in find_violations(machine, motion, "desired")
     }
     near = np.max(np.abs(straight.angle - desired.angle), axis=0) <= STRAIGHT
-    return near & np.array([joint not in broken for joint in JOINTS])
+    return np.asarray(near & np.array([joint not in broken for joint in JOINTS]))
 
 
 def _eased(machine: Machine, desired: Motion) -> Machine:

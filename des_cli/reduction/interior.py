@@ -15,17 +15,19 @@ pivots of an indefinite one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Literal, Protocol, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from des_cli.model.arrays import Flags, Floats
+from des_cli.model.arrays import Floats
 from des_cli.model.solution import Iteration
-from des_cli.reduction.constraints import Rows
+from des_cli.reduction.filter import Filter, Trial
 from des_cli.reduction.newton_system import NewtonSystem, transposed
+from des_cli.reduction.program import Program
+from des_cli.reduction.slacks import Side, longest_step
 from des_cli.reduction.transcription import Expansion
 
 # Fraction of the way to the boundary that a step may take, at the least
@@ -34,12 +36,8 @@ BOUNDARY_FRACTION = 0.99
 # The barrier parameter falls to min(FACTOR * mu, mu ** POWER) once the barrier
 # problem is solved to MARGIN * mu (ibid., eq. 7).
 BARRIER_FACTOR, BARRIER_POWER, BARRIER_MARGIN = 0.2, 1.5, 10.0
-# Slacks start at least this far inside (rows are scaled to bounds of about 1).
-FIRST_SLACK = 1e-2
-# Sufficient decrease in the line search (Armijo), and the filter's margins and
-# exponents (ibid., section 2.3).
-ARMIJO, FILTER_MARGIN, STEEP, SMALL = 1e-4, 1e-5, 2.3, 1.1
-WORST_VIOLATION, SMALL_VIOLATION = 1e4, 1e-4
+# Violation, relative to the cost's rounding, that counts as none.
+FEASIBLE = 1e-3
 # The line search gives up below this step.
 SHORTEST_STEP = 1e-10
 # Where the exact Hessian is not convex on the dynamics, its curvature part is
@@ -55,45 +53,6 @@ ACCEPTABLE = 1e-6
 
 Report: TypeAlias = Callable[[Iteration], None]
 Ending: TypeAlias = Literal["converged", "acceptable", "iteration-limit", "diverged"]
-
-
-class Program(Protocol):
-    """What the method needs to know of a problem.
-
-    Attributes
-    ----------
-    rows : sequence of Rows
-    pinned : (n, 3 + m) array of bool
-        Unknowns that keep their first value.
-    weight : (n,) array
-        Quadrature weight of each sample; residuals are judged per unit time.
-    scale : float
-        Typical size of the running cost's derivative.
-    """
-
-    @property
-    def rows(self) -> Sequence[Rows]: ...
-    @property
-    def pinned(self) -> Flags: ...
-    @property
-    def weight(self) -> Floats: ...
-    @property
-    def scale(self) -> float: ...
-
-    def cost(self, x: Floats) -> float:
-        """Return the cost."""
-
-    def expand(self, x: Floats) -> Expansion:
-        """Expand the cost to second order."""
-
-    def defect(self, x: Floats) -> Floats:
-        """Return the residual of the dynamics, (n - 1, 3)."""
-
-    def defect_jacobian(self, x: Floats) -> tuple[Floats, Floats]:
-        """Return d defect_k / d x_k and / d x_{k+1}, (n - 1, 3, 3 + m) each."""
-
-    def defect_curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
-        """Return the second derivatives of multiplier' defect, (n, 3 + m, 3 + m), or None."""
 
 
 @dataclass(frozen=True)
@@ -151,38 +110,6 @@ def minimise(
     return _Method(program, x, tolerance, barrier).run(max_iterations, first_number, on_iteration)
 
 
-@dataclass
-class _Side:
-    """Slack and multiplier of one side of the bounds of one set of rows."""
-
-    sign: float  # +1 upper bound, -1 lower bound
-    slack: Floats
-    dual: Floats
-
-    @classmethod
-    def at(cls, sign: float, value: Floats, mu: float) -> _Side:
-        slack = np.maximum(1.0 - sign * value, FIRST_SLACK)
-        return cls(sign, slack, mu / slack)
-
-    def excess(self, value: Floats) -> Floats:
-        """Return how far value and slack together miss the bound."""
-        return self.sign * value + self.slack - 1.0
-
-    def stiffness(self) -> Floats:
-        return self.dual / self.slack
-
-    def push(self, mu: float, excess: Floats) -> Floats:
-        """Return the signed multiplier after a step that leaves x alone."""
-        return self.sign * (mu + self.dual * excess) / self.slack
-
-    def slack_move(self, change: Floats, excess: Floats) -> Floats:
-        """Return the slack's step for a change of the value."""
-        return -self.sign * change - excess
-
-    def dual_move(self, mu: float, slack_move: Floats) -> Floats:
-        return (mu - self.dual * slack_move) / self.slack - self.dual
-
-
 @dataclass(frozen=True)
 class _Local:
     """What is known at one iterate; recomputed after every step."""
@@ -206,14 +133,6 @@ class _Step:
     longest_dual: float
 
 
-@dataclass(frozen=True)
-class _Point:
-    """What a line search weighs: total violation of the constraints, and cost."""
-
-    violation: float
-    cost: float
-
-
 class _Method:
     """The state of one minimisation."""
 
@@ -227,21 +146,18 @@ class _Method:
         self.unit = program.scale * float(program.weight.sum()) / self.n
         self.mu = barrier * self.unit
         self.least_mu = 0.1 * tolerance * self.unit
-        self.filter: list[_Point] = []
         self.share = 1.0
-        self.sides: list[_Side] = []
+        self.sides: list[Side] = []
         for rows in program.rows:
             value = rows.value(self.x)
-            self.sides.append(_Side.at(1.0, value, self.mu))
-            self.sides.append(_Side.at(-1.0, value, self.mu))
-
-        first = _violation(program.defect(self.x), self._excess(self.x))
-        self.worst_violation = WORST_VIOLATION * max(1.0, first)
-        self.small_violation = SMALL_VIOLATION * max(1.0, first)
+            self.sides.append(Side.at(1.0, value, self.mu))
+            self.sides.append(Side.at(-1.0, value, self.mu))
+        violation = _violation(program.defect(self.x), self._excess(self.x))
+        self.filter = Filter(violation, self.unit)
 
     def run(self, max_iterations: int, first_number: int, on_iteration: Report | None) -> Outcome:
         log: list[Iteration] = []
-        step: float | None = 0.0
+        step = 0.0
         status: Ending = "iteration-limit"
         while True:
             local = self._look()
@@ -260,10 +176,11 @@ class _Method:
             if len(log) > max_iterations:
                 break
             self._lower_barrier(max(optimality, infeasibility))
-            step = self._advance(local)
-            if step is None:
+            taken = self._advance(local)
+            if taken is None:
                 status = "diverged"
                 break
+            step = taken
         if status != "converged" and max(optimality, infeasibility, gap / self.unit) <= ACCEPTABLE:
             status = "acceptable"
         return Outcome(
@@ -281,8 +198,11 @@ class _Method:
         )
 
     def _excess(self, x: Floats) -> list[Floats]:
-        values = [rows.value(x) for rows in self.program.rows for _ in range(2)]
-        return [side.excess(value) for side, value in zip(self.sides, values, strict=True)]
+        excess = []
+        for index, rows in enumerate(self.program.rows):
+            value = rows.value(x)
+            excess += [side.excess(value) for side in self.sides[2 * index : 2 * index + 2]]
+        return excess
 
     def _errors(self, local: _Local) -> tuple[float, float]:
         """Return the violation of the first-order conditions, and of the constraints."""
@@ -320,7 +240,7 @@ class _Method:
                 return
             lower = min(BARRIER_FACTOR * relative, relative**BARRIER_POWER)
             self.mu = max(self.least_mu, self.unit * lower)
-            self.filter = []
+            self.filter.clear()
 
     # ------------------------------------------------------------------ one step
     def _advance(self, local: _Local) -> float | None:
@@ -398,18 +318,17 @@ class _Method:
         slope = float(np.sum(local.expansion.gradient * step.x)) - self.mu * sum(
             float(np.sum(d / s.slack)) for s, d in pairs
         )
-        here = _Point(
+        here = Trial(
             _violation(local.defect, local.excess), self._barrier_cost(local.expansion.cost)
         )
-        # below this the cost's own rounding decides
-        noise = 1e-13 * (abs(here.cost) + self.unit)
-        if here.violation <= noise / self.unit * 1e-3 and slope > noise:
-            return None
+        noise = self.filter.noise(here)
+        if here.violation <= FEASIBLE * noise / self.unit and slope > noise:
+            return None  # uphill, with no violation to pay for it
         old = [side.slack for side in self.sides]
         length = step.longest
         while length >= SHORTEST_STEP:
             defect, excess, there = self._trial(step, length, old)
-            if self._accepts(here, there, length, slope, noise):
+            if self.filter.accepts(here, there, length, slope):
                 return self._take(step, length)
             if length == step.longest and there.violation >= here.violation > 0.0:
                 more_defect = length * local.defect + defect
@@ -417,39 +336,11 @@ class _Method:
                 self._reset_slacks(old)
                 corrected = self._step(local, system, more_defect, more_excess)
                 there = self._trial(corrected, corrected.longest, old)[2]
-                if self._accepts(here, there, corrected.longest, slope, noise):
+                if self.filter.accepts(here, there, corrected.longest, slope):
                     return self._take(corrected, corrected.longest)
             length *= 0.5
         self._reset_slacks(old)
         return None
-
-    def _accepts(
-        self, here: _Point, there: _Point, length: float, slope: float, noise: float
-    ) -> bool:
-        """Return whether a trial is acceptable; extend the filter if it is on trust.
-
-        Waechter and Biegler, section 2.3: a trial must not be worse in both cost and
-        violation than any point of the filter. Where the violation is small and the
-        cost falls steeply, the cost must fall enough; elsewhere one of the two must.
-        """
-        if not np.isfinite(there.cost) or there.violation > self.worst_violation:
-            return False
-        if any(
-            there.violation >= (1.0 - FILTER_MARGIN) * old.violation
-            and there.cost >= old.cost - FILTER_MARGIN * old.violation
-            for old in self.filter
-        ):
-            return False
-        steep = slope < 0.0 and length * (-slope / self.unit) ** STEEP > here.violation**SMALL
-        if here.violation <= self.small_violation and steep:
-            return there.cost <= here.cost + ARMIJO * length * slope + noise
-        better = (
-            there.violation <= (1.0 - FILTER_MARGIN) * here.violation
-            or there.cost <= here.cost - FILTER_MARGIN * here.violation + noise
-        )
-        if better:
-            self.filter.append(here)
-        return better
 
     def _reset_slacks(self, slacks: list[Floats]) -> None:
         for side, slack in zip(self.sides, slacks, strict=True):
@@ -469,19 +360,19 @@ class _Method:
             multiplier=multiplier,
             slacks=slacks,
             duals=duals,
-            longest=min((_boundary(s.slack, d, fraction) for s, d, _ in pairs), default=1.0),
-            longest_dual=min((_boundary(s.dual, d, fraction) for s, _, d in pairs), default=1.0),
+            longest=min((longest_step(s.slack, d, fraction) for s, d, _ in pairs), default=1.0),
+            longest_dual=min((longest_step(s.dual, d, fraction) for s, _, d in pairs), default=1.0),
         )
 
     def _trial(
         self, step: _Step, length: float, old: list[Floats]
-    ) -> tuple[Floats, list[Floats], _Point]:
+    ) -> tuple[Floats, list[Floats], Trial]:
         """Set the slacks of a trial; return its defect, its excess, and what it is worth."""
         x = self.x + length * step.x
         for side, slack, d in zip(self.sides, old, step.slacks, strict=True):
             side.slack = slack + length * d
         defect, excess = self.program.defect(x), self._excess(x)
-        there = _Point(_violation(defect, excess), self._barrier_cost(self.program.cost(x)))
+        there = Trial(_violation(defect, excess), self._barrier_cost(self.program.cost(x)))
         return defect, excess, there
 
     def _take(self, step: _Step, length: float) -> float:
@@ -507,20 +398,12 @@ class _Method:
     def _barrier_cost(self, cost: float) -> float:
         """Return the cost of the barrier problem at the present slacks."""
         barrier = sum(float(np.sum(np.log(side.slack))) for side in self.sides)
-        return cost - self.mu * barrier
+        return float(cost - self.mu * barrier)
 
 
 def _apply(jacobian: Floats, dual: Floats) -> Floats:
     """Return the transposed Jacobians times vectors."""
     return np.asarray((dual[:, None, :] @ jacobian)[:, 0, :])
-
-
-def _boundary(values: Floats, moves: Floats, fraction: float) -> float:
-    """Return the longest step, at most one, that keeps values positive."""
-    shrinking = moves < 0.0
-    if not np.any(shrinking):
-        return 1.0
-    return float(min(1.0, fraction * np.min(-values[shrinking] / moves[shrinking])))
 
 
 def _largest(values: Floats) -> float:

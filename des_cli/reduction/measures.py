@@ -151,7 +151,7 @@ class SeatGDeviation:
         pull = np.einsum("kjc,kj->kc", self.reach(angle), acceleration)
         pull += np.einsum("kijc,kij->kc", self.curl(angle), products) + self.up
         frame = self.frame(angle)[:, :3, :3]
-        return np.einsum("kcs,kc->ks", frame, pull) / STANDARD_GRAVITY_M_S2
+        return np.asarray(np.einsum("kcs,kc->ks", frame, pull) / STANDARD_GRAVITY_M_S2)
 
     def _sides(self, x: Floats) -> Floats:
         """Return the force at start and end of each interval, (n - 1, 2, 3)."""

@@ -145,7 +145,7 @@ def _status(metrics: Mapping[str, Any]) -> Cell:
 
 
 def _budget(metrics: Mapping[str, Any]) -> Cell:
-    return Cell(budget_words(metrics) or "none: weights")
+    return Cell(budget_words(metrics) or DASH)
 
 
 def _compared(quantity: _Quantity, metrics: Sequence[Mapping[str, Any]]) -> Row:

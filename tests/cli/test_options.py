@@ -48,6 +48,23 @@ def test_reduction_options_become_settings_in_order() -> None:
     )
 
 
+def test_a_budget_becomes_a_setting_inside_the_limits() -> None:
+    assert reduction_settings({"budget": "0.05"}) == (
+        "reduction.budget=0.05",
+        "reduction.limits=enforce",
+    )
+    assert reduction_settings({"budget": "seat_g_rms_error_g = 0.1", "limits": "warn"}) == (
+        "reduction.limits=warn",
+        "reduction.budget={seat_g_rms_error_g: 0.1}",
+    )
+
+
+@pytest.mark.parametrize("weights", [{"r2": "1"}, {"tracking": "1"}])
+def test_a_budget_beside_weights_is_wrong_use(weights: dict[str, str]) -> None:
+    with pytest.raises(click.UsageError, match=f"instead of --{next(iter(weights))}"):
+        reduction_settings({"budget": "0.05", **weights})
+
+
 def test_a_matrix_in_brackets_stays_as_it_is() -> None:
     matrix = "[[2, 0, 0], [0, 2, 0], [0, 0, 2]]"
     assert reduction_settings({"r1": matrix}) == (f"reduction.r1={matrix}",)

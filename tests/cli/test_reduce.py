@@ -176,6 +176,92 @@ def test_every_violation_is_named_even_when_quiet(invoke, write_profile, tmp_pat
     assert limits["desired"]["arm"]["ok"] is False
 
 
+def test_violations_and_notices_are_the_same_everywhere(invoke, write_profile, tmp_path) -> None:
+    fast = write_profile("fast", arm_rpm='"8.8 + 20*t"', limits="enforce", r2="0.01").name
+    result = invoke("reduce", fast, "--no-plots", "--control", "per-joint")
+    assert result.exit_code == 0, result.stderr
+    metrics = metrics_of(tmp_path / "runs" / "fast")
+    assert metrics["executable"]["replaced"] is True
+    assert metrics["executable"]["joint_change_max_rad"]["arm"] > 0.1
+    assert any("desired arm acceleration" in line for line in metrics["violations"])
+    assert not any(line.startswith("modified") for line in metrics["violations"])
+    assert any("replaced by the nearest one" in line for line in metrics["notices"])
+    for line in metrics["violations"] + metrics["notices"]:
+        assert line in result.stderr
+    assert "kept by the modified motion" in result.stderr
+
+
+def test_a_budget_replaces_the_weights_of_the_profile(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", small, "--no-plots", "--budget", "seat_g_rms_error_g=0.01")
+    assert result.exit_code == 0, result.stderr
+    metrics = metrics_of(tmp_path / "runs" / "small")
+    assert metrics["solver"]["budget"] == {"seat_g_rms_error_g": 0.01}
+    assert metrics["solver"]["limits"] == "enforce"
+    assert 0.009 < metrics["fidelity"]["seat_g_rms_error_g"] <= 0.01
+    assert "budget      seat_g_rms_error_g at most 0.01, is 0.00" in result.stderr
+
+
+def test_the_tolerance_of_zero(invoke, small: str, tmp_path) -> None:
+    zero = ("reduce", small, "--no-plots", "--method", "zero", "--control", "per-joint")
+    assert invoke(*zero, "--tolerance", "1e-3").exit_code == 0
+    left = metrics_of(tmp_path / "runs" / "small")["coriolis"]["bb3"]["peak_after_rad_s2"]
+    assert 0.0 < left <= 1e-3
+
+
+@pytest.mark.parametrize("way", ["reduce", "dry-run", "validate"])
+def test_what_excludes_something_else_is_2(invoke, small: str, tmp_path, way: str) -> None:
+    options = (
+        "--limits",
+        "enforce",
+        "--algorithm",
+        "report-sweep",
+        "--set",
+        "reduction.hold=[arm]",
+    )
+    command = ("validate", small) if way == "validate" else ("reduce", small)
+    result = invoke(*command, *options, *(["--dry-run"] if way == "dry-run" else []))
+    assert (result.exit_code, result.stdout) == (2, "")
+    lines = result.stderr.splitlines()
+    assert len(lines) == 2
+    assert all(line.startswith("small: reduction: ") for line in lines)
+    assert "--limits warn" in lines[0]
+    assert "per-joint" in lines[1]
+    assert {path.name for path in tmp_path.iterdir()} == {small}
+
+
+def test_sweeps_that_run_away_are_4_in_one_line(invoke, tmp_path) -> None:
+    options = ("--algorithm", "report-sweep", "--iterations", "20", "--r2", "0.02")
+    result = invoke("reduce", "cobra", "--set", "time.step_s=0.05", *options)
+    assert (result.exit_code, result.stdout) == (4, "")
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("cobra: diverged: sweep ")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("fork", ["0", '"-60*(1 - cos(pi*t/5))"'])
+@pytest.mark.parametrize(
+    "args",
+    [["--budget", "0.05"], ["--budget", "seat_rate_deviation_relative=0.1"], ["--r2", "1"]],
+    ids=" ".join,
+)
+def test_a_motion_without_coriolis_stays_as_it_is(invoke, write_profile, fork, args) -> None:
+    # the arm alone, and the fork alone
+    arm = "8" if fork == "0" else "0"
+    still = write_profile("still", arm_rpm=arm, fork_deg=fork, cab_deg="0").name
+    result = invoke("reduce", still, "-o", "-", *args)
+    assert result.exit_code == 0, result.stderr
+    desired = invoke("reduce", still, "-o", "-", "--algorithm", "report-sweep").stdout
+    np.testing.assert_allclose(csv_rows(result.stdout), csv_rows(desired), rtol=0, atol=1e-3)
+
+
+def test_a_machine_at_rest_stays_at_rest(invoke, write_profile) -> None:
+    rest = write_profile("rest", arm_rpm="0", fork_deg="0", cab_deg="0").name
+    for args in (["--budget", "0.05"], ["--budget", "seat_rate_deviation_relative=0.1"], []):
+        result = invoke("reduce", rest, "-o", "-", *args)
+        assert result.exit_code == 0, result.stderr
+        assert not csv_rows(result.stdout)[:, 1:].any()
+
+
 def test_check_refuses_a_motion_beyond_the_limits(invoke, write_profile, tmp_path) -> None:
     fast = write_profile("fast", arm_rpm='"8.8 + 20*t"').name
     for out in ("x.csv", "folder"):

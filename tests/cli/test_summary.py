@@ -71,6 +71,31 @@ def test_a_weight_on_several_components_names_the_vector_alone() -> None:
     assert rows[0] == ("Coriolis", "whole vector 45.8 % less")
 
 
+def test_a_budget_stands_beside_what_is_spent_of_it() -> None:
+    solver = METRICS["solver"] | {"budget": {"seat_g_rms_error_g": 0.0835}}
+    rows = summary_rows(result(metrics=METRICS | {"solver": solver}))
+    assert ("budget", "seat_g_rms_error_g at most 0.0835, is 0.0834") in rows
+
+
+@pytest.mark.parametrize(
+    ("violations", "words"),
+    [
+        ((), "limits      all kept"),
+        (("desired arm rate",), "limits      kept by the modified motion"),
+        (("desired arm rate", "modified arm rate"), None),
+    ],
+)
+def test_who_keeps_the_limits(
+    capsys: pytest.CaptureFixture[str], violations: tuple[str, ...], words: str | None
+) -> None:
+    print_result(Console(), result(violations=violations), alone=True)
+    lines = [line.strip() for line in capsys.readouterr().err.splitlines()]
+    assert [line for line in lines if "kept" in line] == ([words] if words else [])
+    assert [line for line in lines if line.endswith("arm rate")] == [
+        f"limits      {line}" for line in violations
+    ]
+
+
 @pytest.mark.parametrize(
     ("value", "text"),
     [(0.5, "50.0 %"), (0.0016, "0.16 %"), (12.0, "1200 %"), (None, "not known")],

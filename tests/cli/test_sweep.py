@@ -4,6 +4,8 @@ import csv
 import io
 import json
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -192,6 +194,37 @@ def test_more_jobs_give_the_same_bytes(command, small: str) -> None:
     assert (one.returncode, two.returncode) == (0, 0), two.stderr
     assert one.stdout == two.stdout
     assert one.stderr == two.stderr
+
+
+# Tells, when the points are about to be computed, whether numpy is there already: its
+# BLAS would have taken its number of threads from the user, and --jobs 1 other last
+# bits than a worker.
+EARLY = """
+import sys
+import des_cli.pool as pool
+from des_cli.cli.main import program
+
+def local_executor(workers, make=pool.local_executor):
+    print("numpy" in sys.modules)
+    raise SystemExit(0)
+
+pool.local_executor = local_executor
+program.main(["sweep", "cobra"])
+"""
+
+
+def test_numpy_is_not_imported_before_the_number_of_threads_is_set(
+    python_environment: dict[str, str], tmp_path: Path
+) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", EARLY],
+        capture_output=True,
+        text=True,
+        env=python_environment,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "False\n"), done.stderr
 
 
 def test_a_profile_on_stdin(invoke, small: str, tmp_path) -> None:

@@ -91,6 +91,25 @@ reduction: {method: zero, algorithm: report-sweep, control: per-joint, axes: rep
     np.testing.assert_array_equal(found.tracking, [0.5, 0.5, 0.5])
 
 
+@pytest.mark.parametrize(
+    ("section", "budget"),
+    [
+        ("", (("joint_deviation_relative", 0.05),)),
+        ("{axes: report}", (("joint_deviation_relative", 0.05),)),
+        ("{budget: 0.1}", (("joint_deviation_relative", 0.1),)),
+        ("{budget: {seat_g_rms_error_g: 0.2}}", (("seat_g_rms_error_g", 0.2),)),
+        ("{budget: 0.1, algorithm: report-sweep}", (("joint_deviation_relative", 0.1),)),
+        ("{r2: 1}", ()),
+        ("{tracking: 1}", ()),
+        ("{algorithm: report-sweep}", ()),
+        ("{method: zero}", ()),
+    ],
+)
+def test_weights_and_methods_without_a_budget_have_none(section: str, budget: tuple) -> None:
+    text = SMALL + (f"reduction: {section}\n" if section else "")
+    assert load(text).reduction.budget == budget
+
+
 def test_any_unit_of_the_table_gives_the_same_profile() -> None:
     other = """\
 format: des-coriolis/1
@@ -189,6 +208,15 @@ body_rates: {p_deg_s: "exp(t)", q_rad_s: 0.5, r_rpm: [{from_s: 0, to_s: 1, value
         ("name: small", "reduction: {r2: 0}", "2:17: reduction.r2", "must be greater than 0"),
         ("name: small", "reduction: {r2: [1, 2]}", "2:17: reduction.r2", "at least 3 items"),
         ("name: small", "reduction: {tracking: -1}", "2:23: reduction.tracking", "at least 0"),
+        ("name: small", "reduction: {budget: 0}", "2:21: reduction.budget", "greater than 0"),
+        ("name: small", "reduction: {budget: {g: 1}}", "2:22: reduction.budget.g", "must be joint"),
+        ("name: small", "reduction: {budget: {}}", "2:21: reduction.budget", "at least 1 items"),
+        ("name: small", "reduction: {budget: [1]}", "2:21: reduction.budget", "or one metric"),
+        ("name: small", "reduction: {budget: {seat_g_rms_error_g: 1, joint_deviation_relative: 1}}",
+         "2:21: reduction.budget", "at most 1 items"),
+        ("name: small", "reduction: {budget: 1, r2: 1, tracking: 1}", "2:21: reduction.budget",
+         "stands instead of r2 and tracking"),
+        ("name: small", "reduction: {tolerance: 0}", "2:24: reduction.tolerance", "greater than 0"),
         ("name: small", "reduction: {iterations: 1.5}", "2:25: reduction.iterations", "whole"),
         ("name: small", "reduction: {hold: [leg]}", "2:20: reduction.hold[0]", "arm, fork or cab"),
         ("name: small", "reduction: {method: minimun}", "2:21: reduction.method",
@@ -243,11 +271,33 @@ joints: {arm_rpm: 1, fork_deg: "2 +", cab_deg: "log(t)"}
 reduction: {r2: -1, r1: [[1, 2, 0], [0, 1, 0], [0, 0, 1]]}
 """
     lines = problems_of(text)
-    assert [line.split(":")[1] for line in lines] == ["2", "3", "6", "7"]
+    assert [line.split(":")[1] for line in lines] == ["2", "3", "6", "6", "7"]
     # What the schema refuses hides nothing that can be checked without it.
     lines = problems_of(text.replace('"2 +"', "2").replace("-1", "1"))
     assert [line.split(":")[1] for line in lines] == ["2", "3", "6", "7"]
     assert "symmetric" in lines[-1]
+
+
+@pytest.mark.parametrize(
+    ("commands", "wrong"),
+    [
+        (
+            'joints: {arm: 1, fork_deg: "1/(t - 1)", cab_deg: [{from_s: 0, to_s: 1, value: 2}]}',
+            ["joints.arm", "joints.fork_deg", "joints.cab_deg[0]"],
+        ),
+        (
+            'body_rates: {p_deg_s: "sqrt(-1)", q: 1, r_deg_s: [{from_s: 1, to_s: 2, value: 1}]}',
+            ["body_rates.p_deg_s", "body_rates.q", "body_rates.r_deg_s[0]"],
+        ),
+        (
+            "joints: {arm_rpm: 1, fork_deg: [{from_s: 0, to_s: 1, value: 1}], cab_deg: log(t)}",
+            ["joints.fork_deg[0]", "joints.cab_deg"],
+        ),
+    ],
+)
+def test_a_wrong_command_hides_no_other(commands: str, wrong: list[str]) -> None:
+    text = f"format: des-coriolis/1\ntime: {{start_s: 0, stop_s: 2, step_s: 0.5}}\n{commands}\n"
+    assert [line.split(": ")[1] for line in problems_of(text)] == wrong
 
 
 def test_a_flood_of_mistakes_is_counted() -> None:

@@ -227,6 +227,48 @@ def test_a_desired_motion_over_a_limit_is_marked(stored: Callable[..., StoredRun
 
 
 @pytest.mark.usefixtures("undrawn")
+def test_the_budget_and_what_the_limits_changed_are_told(
+    stored: Callable[..., StoredRun],
+) -> None:
+    run = stored()
+    assert "budget: " not in Page(render_report([run])).text
+    set_at(run.metrics, "solver.budget", {"seat_g_rms_error_g": 0.1312})
+    set_at(run.metrics, "solver.limits", "enforce")
+    set_at(run.metrics, "executable.replaced", True)
+    text = Page(render_report([run])).text
+    assert "Its budget: seat_g_rms_error_g at most 0.1312, is 0.131." in text
+    assert "The desired motion itself keeps the machine's limits." in text
+    set_at(run.metrics, "executable.joint_change_max_rad.cab", 0.0123)
+    set_at(run.metrics, "executable.joint_change_relative", 0.0042)
+    text = Page(render_report([run])).text
+    assert "(cab by up to 0.0123 rad; 0.42 % of the joint angles)" in text
+    assert "itself keeps" not in text
+    assert "desired motion changed for the limits 0.42 %" in text
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_violations_and_notices_are_listed(stored: Callable[..., StoredRun]) -> None:
+    run = stored()
+    run.metrics["violations"] = ["desired cab rate step 0.087", "modified arm <rate> too fast"]
+    run.metrics["notices"] = ["one component was bought"]
+    page = Page(render_report([run]))
+    assert len(page.all("li")) == 2
+    for words in run.metrics["violations"] + run.metrics["notices"]:
+        assert words in page.text
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_acceptable_is_not_called_converged(stored: Callable[..., StoredRun]) -> None:
+    run = stored()
+    set_at(run.metrics, "solver.status", "acceptable")
+    set_at(run.metrics, "solver.converged", False)
+    text = render_report([run])
+    assert '<td class="bad">acceptable, not converged</td>' in text
+    assert "stopped short of its tolerance (acceptable)" in text
+    assert "did not converge" not in text
+
+
+@pytest.mark.usefixtures("undrawn")
 def test_runs_of_one_name_are_told_apart_by_their_folders(
     stored: Callable[..., StoredRun],
 ) -> None:

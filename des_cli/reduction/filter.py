@@ -1,0 +1,85 @@
+"""A filter: which trial points of a line search are worth having.
+
+Waechter and Biegler (Mathematical Programming 106, 2006), section 2.3: a trial
+must not be worse in both cost and violation than any point that the filter
+remembers. Unlike a merit function it needs no weight between the two, which
+would have to be large and would refuse good steps along curved constraints.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# Sufficient decrease of the cost (Armijo); margins of the filter; exponents of
+# the switching condition; bounds on the violation relative to the first one.
+ARMIJO, MARGIN = 1e-4, 1e-5
+STEEP, SMALL = 2.3, 1.1
+WORST_VIOLATION, SMALL_VIOLATION = 1e4, 1e-4
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What is weighed: total violation of the constraints, and cost of the barrier problem."""
+
+    violation: float
+    cost: float
+
+
+class Filter:
+    """The points that later trials must improve on.
+
+    Parameters
+    ----------
+    violation : float
+        Of the start.
+    unit : float
+        Size of a cost that counts.
+    """
+
+    def __init__(self, violation: float, unit: float) -> None:
+        self.unit = unit
+        self.worst = WORST_VIOLATION * max(1.0, violation)
+        self.small = SMALL_VIOLATION * max(1.0, violation)
+        self._points: list[Trial] = []
+
+    def clear(self) -> None:
+        """Forget everything: the costs of another barrier are no measure."""
+        self._points = []
+
+    def noise(self, here: Trial) -> float:
+        """Return the difference of costs below which their rounding decides."""
+        return 1e-13 * (abs(here.cost) + self.unit)
+
+    def accepts(self, here: Trial, there: Trial, length: float, slope: float) -> bool:
+        """Return whether a trial is acceptable; remember what it was accepted from.
+
+        Parameters
+        ----------
+        here, there : Trial
+            The present point, and the trial.
+        length : float
+            Of the step between them.
+        slope : float
+            Derivative of the cost along the step.
+        """
+        if not np.isfinite(there.cost) or there.violation > self.worst:
+            return False
+        if any(
+            there.violation >= (1.0 - MARGIN) * old.violation
+            and there.cost >= old.cost - MARGIN * old.violation
+            for old in self._points
+        ):
+            return False
+        noise = self.noise(here)
+        steep = slope < 0.0 and length * (-slope / self.unit) ** STEEP > here.violation**SMALL
+        if here.violation <= self.small and steep:
+            return there.cost <= here.cost + ARMIJO * length * slope + noise
+        better = (
+            there.violation <= (1.0 - MARGIN) * here.violation
+            or there.cost <= here.cost - MARGIN * here.violation + noise
+        )
+        if better:
+            self._points.append(here)
+        return better

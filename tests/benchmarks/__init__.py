@@ -1,0 +1,1 @@
+"""Heavy comparisons that print what they measure; not collected as tests."""

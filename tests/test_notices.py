@@ -1,0 +1,71 @@
+"""What a user is told beside the numbers, and what not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from des_cli.model.motion import DesiredMotion, Motion
+from des_cli.notices import find_notices
+
+
+def asked(*, damped: tuple[int, ...] = ()) -> DesiredMotion:
+    t = np.linspace(0.0, 1.0, 6)
+    flags = np.isin(np.arange(6), damped)
+    residual = flags[:, None] * np.array([0.3, 0.0, 0.4])
+    motion = Motion(t, np.zeros((6, 3)), np.zeros((5, 3)), np.zeros((5, 3)))
+    return DesiredMotion(motion, np.ones(6), flags, residual)
+
+
+def metrics(
+    *,
+    status: str = "converged",
+    change: float = 0.0,
+    objective: float | None = 0.5,
+    **reductions: float | None,
+) -> dict[str, Any]:
+    coriolis = {name: {"reduction": value} for name, value in reductions.items()}
+    return {
+        "solver": {"status": status, "message": "off by 1e-7"},
+        "coriolis": {**coriolis, "objective": {"reduction": objective}},
+        "executable": {"joint_change_max_rad": {"arm": 0.0, "fork": 0.5 * change, "cab": change}},
+    }
+
+
+def test_nothing_to_say_of_a_clean_run() -> None:
+    assert find_notices(asked(), metrics(bb3=0.7, ab3=-0.04, cb3=None, vector=0.4)) == []
+
+
+def test_a_damped_inverse_is_told_with_its_times_and_its_residual() -> None:
+    (notice,) = find_notices(asked(damped=(1, 2, 3)), metrics())
+    assert "at 3 samples between t = 0.2 and 0.6 s" in notice
+    assert "off by up to 0.5 rad/s" in notice
+
+
+def test_a_replaced_motion_is_told_by_joint_where_it_can_be_noticed() -> None:
+    (notice,) = find_notices(asked(), metrics(change=0.0015))
+    assert "changed by up to cab 0.0015 rad" in notice
+    assert "fork" not in notice
+    assert find_notices(asked(), metrics(change=0.0005)) == []
+
+
+@pytest.mark.parametrize("status", ["converged", "acceptable"])
+def test_a_bought_component_is_told(status: str) -> None:
+    notice = find_notices(asked(), metrics(status=status, bb3=0.7, ab3=-0.28, cb3=-7.0))[0]
+    assert notice == "one component was bought with another: ab3 grew by 28 %, cb3 grew by 700 %"
+
+
+def test_a_solution_that_is_none_has_bought_nothing() -> None:
+    assert find_notices(asked(), metrics(status="diverged", bb3=0.7, ab3=-0.28)) == []
+
+
+def test_a_worse_motion_is_not_called_bought() -> None:
+    (notice,) = find_notices(asked(), metrics(objective=-0.079, bb3=-0.079, ab3=-0.3))
+    assert "grew by 7.9 %: nothing was gained" in notice
+
+
+def test_acceptable_is_told() -> None:
+    (notice,) = find_notices(asked(), metrics(status="acceptable"))
+    assert notice == "acceptable, not converged: off by 1e-7"
