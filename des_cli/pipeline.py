@@ -103,6 +103,10 @@ def require_consistent(wanted: Reduction, name: str = "") -> None:
             ),
             (sweep and wanted.method == "zero", "report-sweep has no method zero"),
             (
+                wanted.method == "zero" and bool(wanted.budget),
+                "method zero keeps a tolerance, not a budget: leave one of them out",
+            ),
+            (
                 sweep and bool(wanted.budget),
                 "report-sweep needs the weight r2 and cannot keep a budget: add --r2",
             ),

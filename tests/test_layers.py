@@ -1,6 +1,7 @@
 """Each layer imports only from its left, and the core touches nothing outside itself."""
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -68,3 +69,12 @@ def test_core_opens_no_file_prints_nothing_and_reads_no_environment(path: Path) 
 
 def test_every_layer_exists() -> None:
     assert {part(path) for path in MODULES} - {"__init__"} == set(LEVEL)
+
+
+def test_every_module_that_solves_is_in_the_architecture() -> None:
+    page = (Path(__file__).parents[1] / "docs" / "architecture.md").read_text("utf-8")
+    table = page.partition("## How a problem is solved")[2].partition("\n\n**")[0]
+    rows = re.findall(r"^\| (`.+?) \|", table, re.M)
+    named = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
+    modules = {path.stem for path in (ROOT / "reduction").glob("*.py")} - {"__init__"}
+    assert set(named) - {"reduction"} == modules

@@ -48,9 +48,17 @@ class BlockTridiagonal:
             raise LinAlgError("singular matrix")
 
     def solve(self, right: Floats) -> Floats:
-        """Solve for one right-hand side, (n, b)."""
+        """Solve for one right-hand side, (n, b).
+
+        Raises
+        ------
+        LinAlgError
+            If the solution is not finite.
+        """
         n, b = self._shape
         solution, _ = dgbtrs(self._lu, *self._band, right.reshape(n * b), self._pivots)
+        if not np.all(np.isfinite(solution)):
+            raise LinAlgError("singular matrix")
         return np.asarray(solution).reshape(n, b)
 
 

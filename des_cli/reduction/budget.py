@@ -167,7 +167,7 @@ def _polish(grid: Transcription, measure: Measure, found: _Priced, search: Searc
         fine = _at_price(grid, measure, price, x, barrier, TOLERANCE, search)
         if fine.spent <= 1.0 or search.left == 0:
             return fine
-        price *= 1.0 + max(1e-4, 2.0 * (fine.spent - 1.0))
+        price *= float(np.clip(fine.spent**1.5, 1.0 + 1e-4, WIDEST_STEP))
         x = fine.outcome.x
     return fine
 

@@ -116,7 +116,9 @@ def _liveliness(grid: Transcription, x: Floats) -> float:
     made, wanted = grid.rates.value(rate), grid.points.rate
     weight = grid.points.weight
     size = float(weight @ np.sum(wanted**2, axis=1))
-    return float(weight @ np.sum(made**2, axis=1)) / max(size, 1e-300)
+    if size == 0.0:
+        return 1.0  # it is asked to stand still
+    return float(weight @ np.sum(made**2, axis=1)) / size
 
 
 def _solution(grid: Transcription, outcome: Outcome, search: Search) -> Solution:

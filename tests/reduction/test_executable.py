@@ -60,17 +60,21 @@ def test_the_cobras_corner_is_rounded(cobra, intervals):
     changed = np.abs(motion.angle - desired.angle)
     # 0.0873 rad/s at half of 5 rad/s^2 takes 35 ms: 0.0873 * 0.035 / 8 rad in the middle.
     assert changed[:, 2].max() < 5e-4
-    assert changed[:, :2].max() < 1e-6
+    # Arm and fork keep their limits: their rates stay, and the fork's angle is their
+    # trapezoidal rule, off by step^2 / 12 times the change of its acceleration.
+    np.testing.assert_array_equal(motion.rate[:, :2], desired.rate[:, :2])
+    assert changed[:, 0].max() < 1e-12
+    assert changed[:, 1].max() < desired.step[0] ** 2 / 12.0 * 0.84
     far = np.abs(desired.t - 5.0) > 0.5
-    assert changed[far].max() < 1e-5
+    assert changed[far, 2].max() < 1e-5
 
 
 def test_a_motion_inside_the_limits_stays(wave):
     desired = wave([[0.3, 0.1, 0.0], [0.2, -0.1, 0.1], [0.1, 0.2, 0.1]], intervals=60)
     motion, outcome = nearest_executable(DES, desired)
-    assert outcome.status == "converged"
-    np.testing.assert_allclose(motion.angle, desired.angle, rtol=0, atol=1e-6)
-    np.testing.assert_allclose(motion.rate_sides, desired.rate_sides, rtol=0, atol=1e-4)
+    assert outcome is None
+    np.testing.assert_allclose(motion.angle, desired.angle, rtol=0, atol=1e-4)
+    np.testing.assert_array_equal(motion.rate_sides, desired.rate_sides)
 
 
 @pytest.mark.parametrize(("joint", "size"), [(0, 1.4), (1, 3.0), (2, 3.5)])
@@ -111,7 +115,7 @@ def test_any_demand_ends_inside_every_limit(rates, seed):
     angle = np.vstack([np.zeros(3), np.cumsum(np.diff(t)[:, None] * demand, axis=0)])
     desired = Motion(t, angle, demand, demand)
     motion, outcome = nearest_executable(DES, desired)
-    assert outcome.status == "converged"
+    assert outcome is None or outcome.status == "converged"
     assert find_violations(DES, motion, "modified") == ()
     np.testing.assert_array_equal(motion.angle[0], desired.angle[0])
     half = 0.5 * motion.step[:, None]
