@@ -70,7 +70,9 @@ def trajectory_columns(run: Run) -> dict[str, Floats]:
         ``p_fork``, ``p_cab``), the adjoint, the Coriolis vector in report and
         in seat axes, the G-vector at the seat, and the split of the seat's
         linear acceleration; ``before`` belongs to the desired motion and
-        ``after`` to the modified one. ``docs/formats.md`` lists the columns.
+        ``after`` to the modified one. At the end the motion that was asked for:
+        the desired one is the nearest to it inside the limits, where these are
+        enforced. ``docs/formats.md`` lists the columns.
     """
     before, after = run.before, run.after
     blocks = [
@@ -86,6 +88,7 @@ def trajectory_columns(run: Run) -> dict[str, Floats]:
             _interleaved(before.seat_parts[:, :, part], after.seat_parts[:, :, part])
             for part in range(len(SEAT_PARTS))
         ),
+        *_motion_blocks(run.asked.motion),
     ]
     names = trajectory_names(run.solution.control.shape[1])
     vectors = (block[:, i] for block in blocks for i in range(block.shape[1]))
@@ -108,16 +111,17 @@ def trajectory_names(joints_of_p: int) -> tuple[str, ...]:
     ]
     return (
         "t_s",
-        *(
-            f"{which}_{joint}_{unit}"
-            for which in ("desired", "modified")
-            for joint in JOINTS
-            for unit in ("rad", "rad_s", "rad_s2")
-        ),
+        *_motion_names("desired"),
+        *_motion_names("modified"),
         *(["p"] if joints_of_p == 1 else [f"p_{joint}" for joint in JOINTS]),
         *(f"adjoint_{joint}" for joint in JOINTS),
         *(f"{stem}_{when}_{unit}" for stem, unit in vectors for when in ("before", "after")),
+        *_motion_names("asked"),
     )
+
+
+def _motion_names(which: str) -> list[str]:
+    return [f"{which}_{joint}_{unit}" for joint in JOINTS for unit in ("rad", "rad_s", "rad_s2")]
 
 
 def encode_table(columns: Mapping[str, Floats], format: TableFormat) -> bytes:

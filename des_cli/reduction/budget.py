@@ -162,12 +162,13 @@ def _at_price(
 
 def _polish(grid: Transcription, measure: Measure, found: _Priced, search: Search) -> _Priced:
     """Solve to the full tolerance; raise the price a little if that overspends."""
-    price, x, barrier = found.price, found.outcome.x, NEAR
-    for _ in range(6):
-        fine = _at_price(grid, measure, price, x, barrier, TOLERANCE, search)
+    price, x = found.price, found.outcome.x
+    for round_ in range(MOST_PRICES):
+        fine = _at_price(grid, measure, price, x, NEAR, TOLERANCE, search)
         if fine.spent <= 1.0 or search.left == 0:
             return fine
-        price *= float(np.clip(fine.spent**1.5, 1.0 + 1e-4, WIDEST_STEP))
+        # little at first; a solution far outside has left for another branch
+        price *= float(np.clip(fine.spent**2, 1.0 + 1e-4 * 4**round_, WIDEST_STEP))
         x = fine.outcome.x
     return fine
 

@@ -159,7 +159,8 @@ def test_commands_give_the_modified_motion_in_their_units(synthetic_run: MakeRun
 def test_trajectory_has_the_columns_of_the_contract(synthetic_run: MakeRun) -> None:
     motions = [f"{which}_{name}" for which in ("desired", "modified") for name in JOINT_COLUMNS]
     adjoint = ["adjoint_arm", "adjoint_fork", "adjoint_cab"]
-    rest = [*adjoint, *VECTOR_COLUMNS, *SPLIT_COLUMNS]
+    asked = [f"asked_{name}" for name in JOINT_COLUMNS]
+    rest = [*adjoint, *VECTOR_COLUMNS, *SPLIT_COLUMNS, *asked]
     scalar = trajectory_columns(synthetic_run(11))
     joints = trajectory_columns(synthetic_run(11, per_joint=True))
     assert list(scalar) == ["t_s", *motions, "p", *rest] == list(trajectory_names(1))
