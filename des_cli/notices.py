@@ -11,6 +11,9 @@ from des_cli.model.motion import DesiredMotion
 BOUGHT = 0.05
 """Relative growth of a Coriolis component's energy that is worth a sentence."""
 
+FELT = 0.25
+"""Relative deviation of the seat's angular rate that is worth a sentence."""
+
 NOTICEABLE = 1e-3
 """Change of a desired angle [rad] by the limits that is worth a sentence."""
 
@@ -29,9 +32,10 @@ def find_notices(asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
     -------
     list of str
         On a damped inverse, a replaced desired motion, a Coriolis that grew or
-        was bought with another, and a solver that stopped short of its tolerance.
+        was bought with another, a motion that feels different, and a solver that
+        stopped short of its tolerance.
     """
-    found = [_damped(asked), _replaced(metrics), _bought(metrics), _short(metrics)]
+    found = [_damped(asked), _replaced(metrics), _bought(metrics), _felt(metrics), _short(metrics)]
     return [sentence for sentence in found if sentence]
 
 
@@ -71,6 +75,19 @@ def _bought(metrics: dict[str, Any]) -> str:
         if part["reduction"] is not None and part["reduction"] < -BOUGHT
     ]
     return f"one component was bought with another: {', '.join(grown)}" if grown else ""
+
+
+def _felt(metrics: dict[str, Any]) -> str:
+    """Say that a small change of angles is not a small change of what is felt."""
+    fidelity = metrics["fidelity"]
+    rate, joints = fidelity["seat_rate_deviation_relative"], fidelity["joint_deviation_relative"]
+    if metrics["solver"]["status"] not in ("converged", "acceptable") or rate < FELT:
+        return ""
+    return (
+        f"the pilot feels more of it than the joints show ({100 * joints:.1f} %): the seat's "
+        f"angular rate is off by {100 * rate:.0f} %; to bound that, set the budget on "
+        "seat_rate_deviation_relative"
+    )
 
 
 def _short(metrics: dict[str, Any]) -> str:

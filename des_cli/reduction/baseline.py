@@ -17,6 +17,9 @@ from des_cli.reduction.problem import Problem
 from des_cli.reduction.report_sweep import sweep
 from des_cli.reduction.transcription import Transcription
 
+RAN_AWAY = 100.0
+"""Growth of the weighted Coriolis beyond which the study's sweep is no baseline."""
+
 BISECTIONS = 60
 """Halvings of [0, 1] for the constant factor: to the last digit of a double."""
 
@@ -53,15 +56,14 @@ def compare(problem: Problem, solution: Solution) -> Baselines:
     before = weighted_energy(problem, problem.desired)
     after = weighted_energy(problem, solution.modified)
     swept = sweep(scalar)
-    ran_away = swept.status == "diverged"
+    swept_energy = weighted_energy(problem, swept.modified)
+    ran_away = swept.status == "diverged" or swept_energy > RAN_AWAY * before
     p = _constant_factor(grid, after) if before > after else 1.0
     constant = grid.motion(grid.follow(np.full((grid.n, 1), p)))
     nothing = before <= 1e-24
     return Baselines(
         reduction=None if nothing else 1.0 - after / before,
-        sweep_reduction=None
-        if nothing or ran_away
-        else 1.0 - weighted_energy(problem, swept.modified) / before,
+        sweep_reduction=None if nothing or ran_away else 1.0 - swept_energy / before,
         sweep_deviation=None if ran_away else joint_deviation(problem.desired, swept.modified),
         constant_p=p,
         constant_deviation=joint_deviation(problem.desired, constant),

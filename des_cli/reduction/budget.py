@@ -15,6 +15,7 @@ import numpy as np
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BudgetMetric
 from des_cli.model.solution import Solution
+from des_cli.reduction.coarse import coarsen, refine
 from des_cli.reduction.interior import Outcome
 from des_cli.reduction.measures import measure_of, spent_on
 from des_cli.reduction.optimum import FAR, NEAR, make_solution
@@ -78,7 +79,9 @@ def spend_budget(problem: Problem, metric: BudgetMetric, budget: float, search: 
     """
     grid = Transcription(problem)
     measure = measure_of(grid, metric, budget)
-    found = _search_price(grid, measure, search)
+    found = _search_price(
+        grid, measure, search, _coarse_start(problem, grid, metric, budget, search)
+    )
     found = _better_start(grid, measure, found, search)
     grid.priced = [(found.price, measure)]
     solution = make_solution(grid, found.outcome, search, 1)
@@ -101,10 +104,25 @@ def pose_budget(problem: Problem) -> Problem:
     return replace(bare, r2=np.full(m, max(REGULARISATION * mean, 1e-9) / m))
 
 
-def _search_price(grid: Transcription, measure: Measure, search: Search) -> _Priced:
+def _coarse_start(
+    problem: Problem, grid: Transcription, metric: BudgetMetric, budget: float, search: Search
+) -> tuple[float, Floats] | None:
+    """Return price and iterate that a coarser grid finds, or None without one."""
+    coarse = coarsen(problem)
+    if coarse is None:
+        return None
+    rough = Transcription(coarse)
+    found = _search_price(rough, measure_of(rough, metric, budget), search, None)
+    return found.price, refine(found.outcome.x, coarse, grid)
+
+
+def _search_price(
+    grid: Transcription, measure: Measure, search: Search, start: tuple[float, Floats] | None
+) -> _Priced:
     """Return the solution at the price at which the budget is spent, from inside it."""
     unit = max(grid.cost(grid.desired), 1e-12)
-    tries = [_at_price(grid, measure, unit, grid.desired, FAR, COARSE, search)]
+    price, x, barrier = (unit, grid.desired, FAR) if start is None else (*start, NEAR)
+    tries = [_at_price(grid, measure, price, x, barrier, COARSE, search)]
     while len(tries) < MOST_PRICES and search.left:
         within = [t for t in tries if t.spent <= 1.0]
         inside = min(within, key=lambda t: t.price, default=None)

@@ -14,8 +14,9 @@ from des_cli.kinematics.chain import Chain
 from des_cli.model.arrays import Floats
 
 DAMPING_BELOW = 0.4
-"""|det J| below which the adapted inverse is damped (on the DES, 6 degrees from
-the singularity)."""
+"""|det J| below which the adapted inverse is damped: on the DES, 24 degrees from the
+singularity. Nearer to it phi changes with the angles by more than 1 / 0.3 in each
+second, and an optimum would be a matter of that and not of the Coriolis."""
 
 DAMPING = 0.3
 """Damping factor on the singularity itself."""

@@ -30,6 +30,7 @@ bulges by a part that falls with the square of the step."""
 FIRST_PENALTY, GROWTH, ENOUGH = 1e2, 10.0, 0.25
 LARGEST_PENALTY = 1e10
 MOST_ROUNDS = 40
+EACH_ROUND = 300  # Newton steps in one round, at the most
 PATIENCE = 6
 """Rounds without progress after which zero counts as out of reach."""
 
@@ -83,7 +84,7 @@ def find_zero(problem: Problem, chosen: Flags, tolerance: float, search: Search)
     for _ in range(MOST_ROUNDS):
         grid = Transcription(replace(problem, r1=rho * np.diag(chosen.astype(float))))
         grid.offset = offset
-        outcome = search.minimise(grid, x, precision, barrier)
+        outcome = search.minimise(grid, x, precision, barrier, most=EACH_ROUND)
         largest = _largest(free, outcome.x, chosen)
         moving = _liveliness(free, outcome.x) >= FROZEN
         usable = moving and outcome.status in ("converged", "acceptable")
@@ -143,12 +144,14 @@ def _refuse(
         why = "no motion inside the limits that was found keeps it"
     else:
         why = "no motion that was found keeps it"
-    status: Status = "infeasible" if search.left else "iteration-limit"
+    status: Status = "infeasible"
+    if not search.left:
+        status, why = "iteration-limit", f"raise reduction.max_iterations ({search.limit})"
     return replace(
         _solution(grid, best.outcome or last, search),
         status=status,
         message=(
-            f"Coriolis within {tolerance:g} rad/s^2 is out of reach: {why}; "
+            f"Coriolis within {tolerance:g} rad/s^2 was not reached: {why}; "
             f"the smallest tolerance reached is {best.largest / WITHIN:.2g} rad/s^2"
         ),
     )
