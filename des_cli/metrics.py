@@ -19,6 +19,9 @@ from des_cli.model.solution import Solution
 from des_cli.reduction.baseline import Baselines, joint_deviation
 from des_cli.reduction.limits import measure_peaks
 
+AT_LIMIT = 0.99
+"""Share of the acceleration limit from which a joint counts as being at it."""
+
 COMPONENTS = ("ab3", "bb3", "cb3", "vector", "seat_x", "seat_y", "seat_z")
 """Names of the measured parts of the Coriolis vector, in the order of the report."""
 
@@ -174,21 +177,27 @@ def fidelity_metrics(run: Measured) -> dict[str, Any]:
 
 
 def _felt_component(step: Floats, before: Floats, after: Floats) -> dict[str, float]:
-    """Return peaks, onset rates and RMS error of one component of the G-vector.
+    """Return peaks, onset rates, jumps and RMS error of one component of the G-vector.
 
-    The onset rate is the largest change over an interval; a jump of the
-    component at a sample, where the joints' acceleration steps, is no onset.
+    The onset rate is the largest change from one sample to the next over the time
+    between them. It contains the jumps, where the joints' acceleration steps: these
+    are what they are on any grid, and the onset rate there grows as the step shrinks.
     """
-    onset_before, onset_after = (
-        float(np.max(np.abs(values[:, 1] - values[:, 0]) / step)) for values in (before, after)
-    )
     return {
         "peak_before_g": float(np.max(np.abs(before))),
         "peak_after_g": float(np.max(np.abs(after))),
-        "onset_before_g_s": onset_before,
-        "onset_after_g_s": onset_after,
+        "onset_before_g_s": _onset(step, before),
+        "onset_after_g_s": _onset(step, after),
+        "jump_before_g": float(np.max(np.abs(before[1:, 0] - before[:-1, 1]), initial=0.0)),
+        "jump_after_g": float(np.max(np.abs(after[1:, 0] - after[:-1, 1]), initial=0.0)),
         "rms_error_g": float(np.sqrt(integrate_sides(step, (after - before) ** 2) / step.sum())),
     }
+
+
+def _onset(step: Floats, values: Floats) -> float:
+    """Return the largest change from sample to sample over the time between them [g/s]."""
+    at_samples = np.append(values[:, 0], values[-1, 1])
+    return float(np.max(np.abs(np.diff(at_samples)) / step))
 
 
 def _relative_norm(step: Floats, off: Floats, size: Floats) -> float:
@@ -215,6 +224,9 @@ def _limits(
     machine: Machine, motion: Motion, which: str, violations: tuple[Violation, ...]
 ) -> dict[str, Any]:
     peaks = measure_peaks(motion)
+    limit = np.array([joint.acceleration for joint in machine.limits])
+    full = np.abs(motion.acceleration) >= AT_LIMIT * limit
+    share = motion.step @ full / motion.step.sum()
     broken = {(v.joint) for v in violations if v.motion == which}
     return {
         joint: {
@@ -223,6 +235,7 @@ def _limits(
             "acceleration_peak_rad_s2": float(peaks.acceleration[j]),
             "acceleration_limit_rad_s2": machine.limits[j].acceleration,
             "rate_step_rad_s": float(peaks.rate_step[j]),
+            "at_acceleration_limit": float(share[j]),
             "ok": joint not in broken,
         }
         for j, joint in enumerate(JOINTS)

@@ -14,6 +14,9 @@ BOUGHT = 0.05
 FELT = 0.25
 """Relative deviation of the seat's angular rate that is worth a sentence."""
 
+HARD = 0.1
+"""Share of the time at the acceleration limit that is worth a sentence."""
+
 NOTICEABLE = 1e-3
 """Change of a desired angle [rad] by the limits that is worth a sentence."""
 
@@ -32,10 +35,18 @@ def find_notices(asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
     -------
     list of str
         On a damped inverse, a replaced desired motion, a Coriolis that grew or
-        was bought with another, a motion that feels different, and a solver that
-        stopped short of its tolerance.
+        was bought with another or was not there, a motion that feels different,
+        hard commands, and a solver that stopped short of its tolerance.
     """
-    found = [_damped(asked), _replaced(metrics), _bought(metrics), _felt(metrics), _short(metrics)]
+    found = [
+        _damped(asked),
+        _replaced(metrics),
+        _nothing(metrics),
+        _bought(metrics),
+        _felt(metrics),
+        _hard(metrics),
+        _short(metrics),
+    ]
     return [sentence for sentence in found if sentence]
 
 
@@ -81,13 +92,37 @@ def _felt(metrics: dict[str, Any]) -> str:
     """Say that a small change of angles is not a small change of what is felt."""
     fidelity = metrics["fidelity"]
     rate, joints = fidelity["seat_rate_deviation_relative"], fidelity["joint_deviation_relative"]
-    if metrics["solver"]["status"] not in ("converged", "acceptable") or rate < FELT:
+    force = fidelity["seat_g_deviation_relative"]
+    if metrics["solver"]["status"] not in ("converged", "acceptable") or max(rate, force) < FELT:
         return ""
     return (
-        f"the pilot feels more of it than the joints show ({100 * joints:.1f} %): the seat's "
-        f"angular rate is off by {100 * rate:.0f} %; to bound that, set the budget on "
-        "seat_rate_deviation_relative"
+        f"what the pilot feels is changed: the seat's angular rate is off by {100 * rate:.0f} %, "
+        f"its G by {100 * force:.0f} %, at {100 * joints:.1f} % in the joints; a budget on "
+        "seat_rate_deviation_relative or seat_g_deviation_relative bounds that"
     )
+
+
+def _hard(metrics: dict[str, Any]) -> str:
+    """Say where the commands drive a joint to its acceleration limit again and again."""
+    hard = [
+        f"{joint} {100 * part['at_acceleration_limit']:.0f} %"
+        for joint, part in metrics["limits"]["modified"].items()
+        if part["at_acceleration_limit"] > HARD
+    ]
+    jump = max(part["jump_after_g"] for part in metrics["fidelity"]["seat_g"].values())
+    if not hard or metrics["solver"]["status"] not in ("converged", "acceptable"):
+        return ""
+    return (
+        f"the commands stand at the acceleration limit for much of the time ({', '.join(hard)}) "
+        f"and jump from one to the other side of it: the seat's G jumps by up to {jump:.2g} g; "
+        "weights r2 and tracking instead of a budget make it smoother"
+    )
+
+
+def _nothing(metrics: dict[str, Any]) -> str:
+    if metrics["coriolis"]["vector"]["reduction"] is not None:
+        return ""
+    return "the desired motion makes no Coriolis: there is nothing to reduce"
 
 
 def _short(metrics: dict[str, Any]) -> str:

@@ -24,13 +24,31 @@ def metrics(
     status: str = "converged",
     change: float = 0.0,
     objective: float | None = 0.5,
+    vector: float | None = 0.4,
+    felt: float = 0.1,
+    at_limit: float = 0.0,
     **reductions: float | None,
 ) -> dict[str, Any]:
     coriolis = {name: {"reduction": value} for name, value in reductions.items()}
+    coriolis["vector"] = {"reduction": vector}
+    quiet = {"at_acceleration_limit": 0.0}
     return {
         "solver": {"status": status, "message": "off by 1e-7"},
         "coriolis": {**coriolis, "objective": {"reduction": objective}},
         "executable": {"joint_change_max_rad": {"arm": 0.0, "fork": 0.5 * change, "cab": change}},
+        "fidelity": {
+            "joint_deviation_relative": 0.05,
+            "seat_rate_deviation_relative": felt,
+            "seat_g_deviation_relative": 0.5 * felt,
+            "seat_g": {axis: {"jump_after_g": 0.37} for axis in ("gx", "gy", "gz")},
+        },
+        "limits": {
+            "modified": {
+                "arm": {"at_acceleration_limit": at_limit},
+                "fork": quiet,
+                "cab": quiet,
+            }
+        },
     }
 
 
@@ -64,6 +82,25 @@ def test_a_solution_that_is_none_has_bought_nothing() -> None:
 def test_a_worse_motion_is_not_called_bought() -> None:
     (notice,) = find_notices(asked(), metrics(objective=-0.079, bb3=-0.079, ab3=-0.3))
     assert "grew by 7.9 %: nothing was gained" in notice
+
+
+def test_a_motion_that_feels_different_is_told() -> None:
+    (notice,) = find_notices(asked(), metrics(felt=0.51))
+    assert "angular rate is off by 51 %, its G by 26 %, at 5.0 % in the joints" in notice
+    assert find_notices(asked(), metrics(felt=0.2)) == []
+    assert find_notices(asked(), metrics(felt=0.51, status="infeasible")) == []
+
+
+def test_hard_commands_are_told() -> None:
+    (notice,) = find_notices(asked(), metrics(at_limit=0.97))
+    assert "(arm 97 %)" in notice
+    assert "jumps by up to 0.37 g" in notice
+    assert find_notices(asked(), metrics(at_limit=0.05)) == []
+
+
+def test_no_coriolis_is_told() -> None:
+    (notice,) = find_notices(asked(), metrics(vector=None, objective=None))
+    assert "nothing to reduce" in notice
 
 
 def test_acceptable_is_told() -> None:

@@ -152,7 +152,7 @@ def reduction_settings(values: Mapping[str, Any]) -> tuple[str, ...]:
         If a budget is given together with the weights that it stands instead of.
 
     >>> reduction_settings({"method": "zero", "r1": "0,2,0", "r2": None})
-    ('reduction.method=zero', 'reduction.r1=[0,2,0]')
+    ('reduction.method=zero', 'reduction.r1=[0,2,0]', 'reduction.limits=enforce')
     """
     given = {
         key: _bracketed(values[key]) for key, _, _ in _REDUCTION if values.get(key) is not None
@@ -165,6 +165,8 @@ def reduction_settings(values: Mapping[str, Any]) -> tuple[str, ...]:
             given["budget"] = f"{{{metric.strip()}: {most.strip()}}}"
         # what a budget buys is meant inside the limits, unless it is said otherwise
         given.setdefault("limits", "enforce")
+    if given.get("method") == "zero":
+        given.setdefault("limits", "enforce")  # without limits it jumps where it can
     return tuple(f"reduction.{key}={value}" for key, value in given.items())
 
 

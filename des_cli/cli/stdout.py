@@ -22,7 +22,11 @@ def write_data(data: bytes | str) -> None:
     if sys.stdout is None:
         raise FileAccessError([Problem("stdout", "is closed")])
     stream = sys.stdout.buffer
-    stream.write(data.encode() if isinstance(data, str) else data)
+    rest = memoryview(data.encode() if isinstance(data, str) else data)
+    while rest:
+        # unbuffered (PYTHONUNBUFFERED), a write may take a part and say so only here
+        taken = stream.write(rest)
+        rest = rest[len(rest) if taken is None else taken :]
     stream.flush()
 
 

@@ -50,7 +50,8 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
     else:
         console.say(_short_line(console, result))
     label = f"  {'limits':<{_LABEL_WIDTH}} "
-    console.warn(label + line for line in result.violations)
+    whose = "" if alone else f"{result.name}: "
+    console.warn(f"{label}{whose}{line}" for line in result.violations)
     if alone and not any(line.startswith("modified") for line in result.violations):
         console.say(label + ("kept by the modified motion" if result.violations else "all kept"))
     for notice in result.notices:

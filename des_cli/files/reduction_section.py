@@ -26,6 +26,9 @@ _PLAIN = (
 DEFAULT_METRIC = "joint_deviation_relative"
 """What a budget without a name is on."""
 
+ABSOLUTE = ("seat_g_rms_error_g", "attitude_error_max_deg")
+"""Budgets with a unit; all others are shares."""
+
 _ROUNDING = 1e-12
 """An eigenvalue this far below zero, relative to the largest, is rounding."""
 
@@ -65,6 +68,12 @@ def read_reduction(section: Section | None, findings: Findings) -> Reduction:
         budget = given["budget"]
         by_metric = budget if isinstance(budget, dict) else {DEFAULT_METRIC: budget}
         values["budget"] = tuple((metric, float(most)) for metric, most in by_metric.items())
+        for metric, most in by_metric.items():
+            if metric not in ABSOLUTE and most >= 1.0:
+                findings.add(
+                    ["reduction", "budget"],
+                    f"is a share and must be below 1: 0.05 means 5 % of {metric} (not {most:g})",
+                )
     elif weights or given.get("algorithm") == "report-sweep" or given.get("method") == "zero":
         values["budget"] = ()
     return Reduction(**values)

@@ -143,7 +143,7 @@ def _refuse(
     elif problem.machine is not None:
         why = "no motion inside the limits that was found keeps it"
     else:
-        why = "no motion that was found keeps it"
+        why = "no motion that was found keeps it; inside the limits (limits: enforce) one may"
     status: Status = "infeasible"
     if not search.left:
         status, why = "iteration-limit", f"raise reduction.max_iterations ({search.limit})"

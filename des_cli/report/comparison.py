@@ -145,7 +145,8 @@ def _status(metrics: Mapping[str, Any]) -> Cell:
 
 
 def _budget(metrics: Mapping[str, Any]) -> Cell:
-    return Cell(budget_words(metrics) or DASH)
+    # what was spent of it stands among the costs
+    return Cell(budget_words(metrics).replace(" at most ", " ≤ ").partition(", is ")[0] or DASH)
 
 
 def _compared(quantity: _Quantity, metrics: Sequence[Mapping[str, Any]]) -> Row:

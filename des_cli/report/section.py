@@ -186,7 +186,15 @@ def _joint_rows(metrics: Mapping[str, Any]) -> list[list[Cell]]:
 
 
 def _seat_rows(metrics: Mapping[str, Any]) -> list[list[Cell]]:
-    keys = ("peak_before_g", "peak_after_g", "onset_before_g_s", "onset_after_g_s", "rms_error_g")
+    keys = (
+        "peak_before_g",
+        "peak_after_g",
+        "onset_before_g_s",
+        "onset_after_g_s",
+        "jump_before_g",
+        "jump_after_g",
+        "rms_error_g",
+    )
     rows = []
     for axis in "xyz":
         values = [number(metrics, f"fidelity.seat_g.g{axis}.{key}") for key in keys]
