@@ -205,6 +205,31 @@ def test_felt_fidelity(run):
     assert fidelity["attitude_error_max_deg"] == pytest.approx(largest, rel=1e-6)
 
 
+def test_onset_and_jump_of_the_g_vector(run):
+    for index, axis in enumerate(("gx", "gy", "gz")):
+        found = run.metrics["fidelity"]["seat_g"][axis]
+        for when, response in (("before", run.before), ("after", run.after)):
+            sides = response.seat_g[..., index]
+            # from just after one sample to just after the next: slope and jump together
+            rise = [
+                abs((sides[k + 1, 0] if k + 1 < len(sides) else sides[k, 1]) - sides[k, 0])
+                / run.desired.step[k]
+                for k in range(len(sides))
+            ]
+            jump = [abs(sides[k + 1, 0] - sides[k, 1]) for k in range(len(sides) - 1)]
+            assert found[f"onset_{when}_g_s"] == pytest.approx(max(rise))
+            assert found[f"jump_{when}_g"] == pytest.approx(max(jump))
+
+
+def test_the_time_at_the_acceleration_limit(run):
+    motion = run.solution.modified
+    for j, joint in enumerate(JOINTS):
+        full = np.abs(motion.acceleration[:, j]) >= 0.99 * DES.limits[j].acceleration
+        share = sum(motion.step[full]) / 6.0
+        found = run.metrics["limits"]["modified"][joint]["at_acceleration_limit"]
+        assert found == pytest.approx(share)
+
+
 def test_the_constant_factor_has_the_solutions_reduction(run):
     wanted = run.desired
     constant = run.metrics["baseline"]["constant_p"]

@@ -6,7 +6,7 @@ import json
 
 import click
 
-from des_cli.cli.options import verbosity_options
+from des_cli.cli.options import text_or_json_option, verbosity_options
 from des_cli.cli.stdout import write_data
 
 
@@ -19,15 +19,7 @@ Examples:
 """,
 )
 @click.argument("machine", metavar="[NAME|FILE]", required=False)
-@click.option(
-    "-f",
-    "--format",
-    "form",
-    type=click.Choice(["text", "json"]),
-    default="text",
-    show_default=True,
-    help="Text is a line a machine, or the YAML of one; json is an object a line.",
-)
+@text_or_json_option("Text is a line a machine, or the YAML of one; json is an object a line.")
 @verbosity_options
 def machines(machine: str | None, form: str) -> None:
     """List the built-in machines, or print one with its limits, lengths and source.

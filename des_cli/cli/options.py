@@ -85,6 +85,19 @@ def setting_options(command: F) -> F:
     return settings(columns(command))
 
 
+def text_or_json_option(text: str) -> Callable[[F], F]:
+    """Add ``--format text|json`` to a command that answers in lines."""
+    return click.option(
+        "-f",
+        "--format",
+        "form",
+        type=click.Choice(["text", "json"]),
+        default="text",
+        show_default=True,
+        help=text,
+    )
+
+
 # The options that are keys of `reduction:` by name. What a value may be is the
 # schema's business, but for the words that --help lists.
 _REDUCTION: tuple[tuple[str, Any, str], ...] = (

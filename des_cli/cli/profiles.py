@@ -7,7 +7,7 @@ import json
 
 import click
 
-from des_cli.cli.options import verbosity_options
+from des_cli.cli.options import text_or_json_option, verbosity_options
 from des_cli.cli.stdout import write_data
 
 
@@ -20,15 +20,7 @@ Examples:
 """,
 )
 @click.argument("name", required=False)
-@click.option(
-    "-f",
-    "--format",
-    "form",
-    type=click.Choice(["text", "json"]),
-    default="text",
-    show_default=True,
-    help="Of the list; json prints one object a line.",
-)
+@text_or_json_option("Of the list; json prints one object a line.")
 @verbosity_options
 def profiles(name: str | None, form: str) -> None:
     """List the built-in profiles, or print the file of the one called NAME."""

@@ -14,6 +14,7 @@ from des_cli.cli.options import (
     reduction_options,
     reduction_settings,
     setting_options,
+    text_or_json_option,
     verbosity_options,
 )
 from des_cli.cli.stdout import write_data
@@ -36,15 +37,7 @@ Examples:
 @profile_argument
 @setting_options
 @reduction_options
-@click.option(
-    "-f",
-    "--format",
-    "form",
-    type=click.Choice(["text", "json"]),
-    default="text",
-    show_default=True,
-    help="json prints one object a line.",
-)
+@text_or_json_option("json prints one object a line.")
 @verbosity_options
 @click.pass_obj
 def validate(
