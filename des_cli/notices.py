@@ -50,6 +50,10 @@ def find_notices(asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
     return [sentence for sentence in found if sentence]
 
 
+def _usable(metrics: dict[str, Any]) -> bool:
+    return metrics["solver"]["status"] in ("converged", "acceptable")
+
+
 def _damped(asked: DesiredMotion) -> str:
     if not np.any(asked.damped):
         return ""
@@ -76,7 +80,7 @@ def _replaced(metrics: dict[str, Any]) -> str:
 def _bought(metrics: dict[str, Any]) -> str:
     parts = dict(metrics["coriolis"])
     objective = parts.pop("objective")["reduction"]
-    if metrics["solver"]["status"] not in ("converged", "acceptable"):
+    if not _usable(metrics):
         return ""
     if objective is not None and objective < 0.0:
         return f"the Coriolis that r1 weighs grew by {-100 * objective:.3g} %: nothing was gained"
@@ -93,7 +97,7 @@ def _felt(metrics: dict[str, Any]) -> str:
     fidelity = metrics["fidelity"]
     rate, joints = fidelity["seat_rate_deviation_relative"], fidelity["joint_deviation_relative"]
     force = fidelity["seat_g_deviation_relative"]
-    if metrics["solver"]["status"] not in ("converged", "acceptable") or max(rate, force) < FELT:
+    if not _usable(metrics) or max(rate, force) < FELT:
         return ""
     return (
         f"what the pilot feels is changed: the seat's angular rate is off by {100 * rate:.0f} %, "
@@ -110,7 +114,7 @@ def _hard(metrics: dict[str, Any]) -> str:
         if part["at_acceleration_limit"] > HARD
     ]
     jump = max(part["jump_after_g"] for part in metrics["fidelity"]["seat_g"].values())
-    if not hard or metrics["solver"]["status"] not in ("converged", "acceptable"):
+    if not hard or not _usable(metrics):
         return ""
     return (
         f"the commands stand at the acceleration limit for much of the time ({', '.join(hard)}) "

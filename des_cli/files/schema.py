@@ -24,8 +24,6 @@ from des_cli.model.profile import (
     Method,
 )
 
-FORMAT = "des-coriolis/1"
-
 _NAME = re.compile(r"\w([\w .,+()-]{0,98}[\w)+])?")
 
 

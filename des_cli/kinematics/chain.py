@@ -30,8 +30,6 @@ _QUARTER_TURN_TOLERANCE = 1e-15
 """In quarter turns: how near to a multiple an angle counts as one. Double
 rounding of k pi/2 stays below it, so zeros of the machine are exact zeros."""
 
-_Z = np.array([0.0, 0.0, 1.0])
-
 
 @dataclass(frozen=True, eq=False)
 class Chain:

@@ -17,7 +17,7 @@ from des_cli.model.profile import BudgetMetric
 from des_cli.model.solution import Solution
 from des_cli.reduction.coarse import coarsen, refine
 from des_cli.reduction.interior import Outcome
-from des_cli.reduction.measures import measure_of, spent_on
+from des_cli.reduction.measures import measure_of
 from des_cli.reduction.optimum import FAR, NEAR, make_solution
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.search import TOLERANCE, Search
@@ -175,7 +175,7 @@ def _at_price(
     grid.priced = [(price, measure)]
     most = EACH_PRICE if tolerance > TOLERANCE else None
     outcome = search.minimise(grid, x, tolerance, barrier, most=most)
-    return _Priced(price, spent_on(measure, outcome.x), outcome)
+    return _Priced(price, measure.spent(outcome.x), outcome)
 
 
 def _polish(grid: Transcription, measure: Measure, found: _Priced, search: Search) -> _Priced:
@@ -196,7 +196,7 @@ def _better_start(grid: Transcription, measure: Measure, found: _Priced, search:
     grid.priced = [(found.price, measure)]
     for barrier in (0.1,):
         outcome = search.minimise(grid, grid.desired, TOLERANCE, barrier, most=OTHER_START)
-        spent = spent_on(measure, outcome.x)
+        spent = measure.spent(outcome.x)
         usable = outcome.status == "converged" and spent <= 1.0
         if usable and outcome.cost < found.outcome.cost - 1e-9 * abs(found.outcome.cost):
             found = _Priced(found.price, spent, outcome)

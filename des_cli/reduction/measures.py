@@ -15,7 +15,7 @@ from des_cli.reduction.transcription import Expansion, Measure, Transcription
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
 
-class JointDeviation:
+class JointDeviation(Measure):
     """||theta - Theta|| / ||Theta||, squared.
 
     Parameters
@@ -42,7 +42,7 @@ class JointDeviation:
         return Expansion(self.value(x), gradient, hessian)
 
 
-class FactorDeviation:
+class FactorDeviation(Measure):
     """Mean of (1 - u)^2, over its budget (the metric is a square already)."""
 
     def __init__(self, grid: Transcription, budget: float) -> None:
@@ -61,7 +61,7 @@ class FactorDeviation:
         return Expansion(self.value(x), gradient, hessian)
 
 
-class SeatRateDeviation:
+class SeatRateDeviation(Measure):
     """||W - W_desired|| / ||W_desired|| in seat axes, squared.
 
     Parameters
@@ -114,7 +114,7 @@ class SeatRateDeviation:
         )
 
 
-class SeatGDeviation:
+class SeatGDeviation(Measure):
     """||G - G_desired||, squared, over a size times the budget squared.
 
     Parameters
@@ -222,7 +222,7 @@ class SeatGDeviation:
         )
 
 
-class AttitudeDeviation:
+class AttitudeDeviation(Measure):
     """The largest angle between the seat's attitude and the desired one.
 
     A maximum is not smooth: the price is on the mean of the eighth power of the
@@ -278,13 +278,6 @@ class AttitudeDeviation:
         )
         bend[:, :3, :3] = first[:, None, None] * curve
         return Expansion(self.value(x), gradient, hessian, bend=bend)
-
-
-def spent_on(measure: Measure, x: Floats) -> float:
-    """Return the square of the metric over the square of its budget."""
-    if isinstance(measure, AttitudeDeviation):
-        return measure.spent(x)
-    return measure.value(x)
 
 
 def measure_of(grid: Transcription, metric: BudgetMetric, budget: float) -> Measure:

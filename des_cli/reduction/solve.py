@@ -65,7 +65,7 @@ def make_executable(machine: Machine, desired: Motion) -> tuple[Motion, str]:
                 f"rad, at t = {desired.t[0]:g} s; start it inside"
             )
     motion, outcome = nearest_executable(machine, desired)
-    if outcome is not None and outcome.status not in ("converged", "acceptable"):
+    if outcome is not None and not outcome.usable:
         return motion, (
             "no motion near the desired one keeps the limits: the search for it ended with "
             f"the limits off by {outcome.infeasibility:.1e} (relative)"

@@ -13,8 +13,8 @@ every interval; a sample at which the desired rate steps counts once for each si
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -65,12 +65,18 @@ class Expansion:
         )
 
 
-class Measure(Protocol):
+class Measure(ABC):
     """A measure of a whole motion, scaled so that its budget is one."""
 
+    @abstractmethod
     def value(self, x: Floats) -> float:
         """Return the value of an iterate."""
 
+    def spent(self, x: Floats) -> float:
+        """Return the squared metric over its squared budget: the value, where it is smooth."""
+        return self.value(x)
+
+    @abstractmethod
     def expand(self, x: Floats) -> Expansion:
         """Expand the value to second order; the Hessian may be a Gauss-Newton one."""
 

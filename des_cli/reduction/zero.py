@@ -87,7 +87,7 @@ def find_zero(problem: Problem, chosen: Flags, tolerance: float, search: Search)
         outcome = search.minimise(grid, x, precision, barrier, most=EACH_ROUND)
         largest = _largest(free, outcome.x, chosen)
         moving = _liveliness(free, outcome.x) >= FROZEN
-        usable = moving and outcome.status in ("converged", "acceptable")
+        usable = moving and outcome.usable
         done = usable and largest <= WITHIN * tolerance
         if done and precision == TOLERANCE:
             return _solution(free, outcome, search)

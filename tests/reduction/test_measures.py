@@ -9,7 +9,7 @@ from des_cli.kinematics.chain import seat_rotation
 from des_cli.kinematics.response import respond
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
-from des_cli.reduction.measures import measure_of, spent_on
+from des_cli.reduction.measures import measure_of
 from des_cli.reduction.transcription import Transcription
 
 BUDGET = 0.3
@@ -64,7 +64,7 @@ def metric(name, grid, x):
 def test_at_its_budget_a_measure_is_one(name, grid, x):
     value = metric(name, grid, x)
     at_budget = measure_of(grid, name, value)
-    assert spent_on(at_budget, x) == pytest.approx(1.0, rel=1e-9)
+    assert at_budget.spent(x) == pytest.approx(1.0, rel=1e-9)
     assert at_budget.expand(x).cost == pytest.approx(1.0, rel=1e-9)
     assert at_budget.value(grid.desired) == pytest.approx(0.0, abs=1e-20)
     assert measure_of(grid, name, 2.0 * value).value(x) < 0.6
@@ -116,7 +116,7 @@ def test_the_largest_attitude_error_is_what_is_spent(grid, x):
     cosine = 0.5 * (np.einsum("kij,kij->k", made, wanted) - 1.0)
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
     measure = measure_of(grid, "attitude_error_max_deg", np.degrees(angle.max()))
-    assert spent_on(measure, x) == pytest.approx(1.0, rel=1e-9)
+    assert measure.spent(x) == pytest.approx(1.0, rel=1e-9)
     # Priced is the mean of the eighth power of the chord.
     share = np.sin(angle / 2.0) / np.sin(angle.max() / 2.0)
     mean = np.trapezoid(share**8, grid.problem.desired.t) / np.ptp(grid.problem.desired.t)
