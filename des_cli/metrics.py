@@ -93,7 +93,7 @@ def _solver(profile: Profile, solution: Solution) -> dict[str, Any]:
         "r2": reduction.r2.tolist(),
         "tracking": reduction.tracking.tolist(),
         "limits": reduction.limits,
-        "budget": dict(reduction.budget) or None,
+        "budget": {b.metric: b.most for b in reduction.budget} or None,
         "status": solution.status,
         "converged": solution.converged,
         "iterations": solution.iterations,

@@ -57,7 +57,11 @@ def trade_point(
     """
     run = reduce_profile(profile, on_iteration=on_iteration)
     wanted = profile.reduction
-    swept, value = wanted.budget[0] if wanted.budget else ("r2", _weight(wanted.r2))
+    swept, value = (
+        (wanted.budget[0].metric, wanted.budget[0].most)
+        if wanted.budget
+        else ("r2", _weight(wanted.r2))
+    )
     status, message = _outcome(run)
     point = TradePoint(
         "optimum",

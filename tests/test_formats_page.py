@@ -13,7 +13,8 @@ from des_cli.errors import ExitCode
 from des_cli.files.expression import FUNCTIONS
 from des_cli.files.load import load_profile
 from des_cli.files.tables import trajectory_names
-from des_cli.model.profile import BudgetMetric, Reduction
+from des_cli.model.metric import Budget, MetricKey
+from des_cli.model.profile import Reduction
 from des_cli.pipeline import reduce_profile
 from des_cli.units import UNITS
 
@@ -64,7 +65,9 @@ def test_keys_of_a_reduction() -> None:
     for key, value in rows:
         if isinstance(getattr(default, key), (str, int, float)):
             assert value == f"`{getattr(default, key)}`"
-    assert default.budget == (("joint_deviation_relative", float(dict(rows)["budget"].strip("`"))),)
+    assert default.budget == (
+        Budget("joint_deviation_relative", float(dict(rows)["budget"].strip("`"))),
+    )
     weights = {"r1": default.r1.diagonal(), "r2": default.r2[0], "tracking": default.tracking[0]}
     for key, weight in weights.items():
         np.testing.assert_array_equal(json.loads(dict(rows)[key].strip("`")), weight)
@@ -72,7 +75,7 @@ def test_keys_of_a_reduction() -> None:
 
 def test_metrics_of_a_budget() -> None:
     text = section("Reduction").partition("A budget is on one metric")[2].partition(". ")[0]
-    assert named(text.partition(":")[2]) == set(get_args(BudgetMetric))
+    assert named(text.partition(":")[2]) == set(get_args(MetricKey))
 
 
 @pytest.fixture(scope="module")

@@ -43,9 +43,9 @@ def _require_metric(metric: str) -> None:
 
     # This imports numpy, whose number of threads is settled by that.
     with single_blas_thread():
-        from des_cli.model.profile import BudgetMetric
+        from des_cli.model.metric import MetricKey
 
-    known = get_args(BudgetMetric)
+    known = get_args(MetricKey)
     if metric not in known:
         hint = did_you_mean(metric, known)
         raise click.BadParameter(f"{metric!r} is not a metric{hint}; it is {one_of(known)}.")

@@ -99,7 +99,7 @@ def understood(source: str, profile: Profile) -> dict[str, Any]:
         "algorithm": reduction.algorithm,
         "control": reduction.control,
         "axes": reduction.axes,
-        "budget": dict(reduction.budget) or None,
+        "budget": {b.metric: b.most for b in reduction.budget} or None,
         "limits": reduction.limits,
         "sha256": profile.sha256,
     }

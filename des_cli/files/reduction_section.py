@@ -9,6 +9,7 @@ import numpy as np
 from des_cli.files.findings import Findings
 from des_cli.files.sections import Section
 from des_cli.model.arrays import Floats
+from des_cli.model.metric import Budget
 from des_cli.model.profile import Reduction
 
 _PLAIN = (
@@ -66,8 +67,10 @@ def read_reduction(section: Section | None, findings: Findings) -> Reduction:
                 ["reduction", "budget"], f"stands instead of {' and '.join(weights)}: give either"
             )
         budget = given["budget"]
-        by_metric = budget if isinstance(budget, dict) else {DEFAULT_METRIC: budget}
-        values["budget"] = tuple((metric, float(most)) for metric, most in by_metric.items())
+        by_metric: dict[Any, float] = (
+            budget if isinstance(budget, dict) else {DEFAULT_METRIC: budget}
+        )
+        values["budget"] = tuple(Budget(m, float(most)) for m, most in by_metric.items())
         for metric, most in by_metric.items():
             if metric not in ABSOLUTE and most >= 1.0:
                 findings.add(

@@ -13,10 +13,10 @@ from des_cli.files.machine_schema import MachineSection
 from des_cli.files.sections import OMITTED, Measure, Number, Section, fault, measured
 from des_cli.files.wording import shown
 from des_cli.model.machine import Joint
+from des_cli.model.metric import MetricKey
 from des_cli.model.profile import (
     Algorithm,
     Axes,
-    BudgetMetric,
     Control,
     Ends,
     JacobianAt,
@@ -206,7 +206,7 @@ def _budget_kind(value: Any) -> str | None:
 Budget = Annotated[
     Annotated[Positive, Tag("<number>")]
     | Annotated[
-        dict[BudgetMetric, Positive],
+        dict[MetricKey, Positive],
         Field(min_length=1, max_length=1),
         Tag("<by metric>"),
     ],

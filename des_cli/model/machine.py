@@ -55,11 +55,48 @@ class JointLimits:
         [rad/s]
     acceleration : float
         [rad/s^2]
+    jerk : float
+        [rad/s^3]; infinite where the machine has no such limit.
     """
 
     angle: float
     rate: float
     acceleration: float
+    jerk: float = math.inf
+
+
+ASSUMED_JERK_PER_ACCELERATION = 2.0
+"""Jerk limit of a joint over its acceleration limit [1/s] where nobody published one: the
+acceleration then takes half a second from zero to its limit."""
+
+UNBOUNDED = (-math.inf, math.inf)
+
+
+@dataclass(frozen=True, slots=True)
+class OccupantBounds:
+    """What the person in the seat may get; what is not bounded is infinite.
+
+    Parameters
+    ----------
+    gx, gy, gz : tuple of float
+        Least and most of each component of the G-vector [g], in the pilot's
+        signs (``kinematics.seat``).
+    g_onset : float
+        Largest rate of change of any component of the G-vector, in magnitude [g/s].
+    angular_acceleration : float
+        Largest magnitude of the seat's total angular acceleration dW/dt [rad/s^2].
+    """
+
+    gx: tuple[float, float] = UNBOUNDED
+    gy: tuple[float, float] = UNBOUNDED
+    gz: tuple[float, float] = UNBOUNDED
+    g_onset: float = math.inf
+    angular_acceleration: float = math.inf
+
+    @property
+    def bounded(self) -> bool:
+        """Whether anything is bounded at all."""
+        return self != OccupantBounds()
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +131,8 @@ class Machine:
         The named dimensions [m] that the rows were made of, for display.
     source : str
         Where the dimensions and limits come from.
+    occupant : OccupantBounds
+        What the person in the seat may get.
     """
 
     name: str
@@ -102,3 +141,4 @@ class Machine:
     gravity: float = STANDARD_GRAVITY_M_S2
     lengths: Mapping[str, float] = field(default_factory=dict)
     source: str = ""
+    occupant: OccupantBounds = field(default_factory=OccupantBounds)

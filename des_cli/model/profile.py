@@ -9,23 +9,17 @@ import numpy as np
 
 from des_cli.model.arrays import Floats, freeze
 from des_cli.model.machine import Joint, Machine, Seat
+from des_cli.model.metric import Budget
 
 Method: TypeAlias = Literal["minimum", "zero"]
 Algorithm: TypeAlias = Literal["optimum", "report-sweep"]
-Control: TypeAlias = Literal["scalar", "per-joint"]
+Control: TypeAlias = Literal["free", "scalar", "per-joint"]
 Axes: TypeAlias = Literal["report", "seat"]
 JacobianAt: TypeAlias = Literal["desired", "adapted"]
 LimitsPolicy: TypeAlias = Literal["enforce", "check", "warn"]
-BudgetMetric: TypeAlias = Literal[
-    "joint_deviation_relative",
-    "joint_deviation_relative_squared",
-    "mean_square_one_minus_p",
-    "seat_rate_deviation_relative",
-    "seat_g_deviation_relative",
-    "seat_g_rms_error_g",
-    "attitude_error_max_deg",
-]
-Ends: TypeAlias = Literal["free", "match-start", "match-both"]
+Ends: TypeAlias = Literal["free", "match-start", "match-rates", "match-both"]
+Objective: TypeAlias = Literal["coriolis", "blend", "felt"]
+FreeParameter: TypeAlias = Literal["seat_yaw", "seat_pitch", "fork_start", "cab_start"]
 
 
 @dataclass(frozen=True)
@@ -107,12 +101,22 @@ class Reduction:
         Newton steps in all.
     hold : frozenset of str
         Joints that keep their desired motion (per-joint control).
-    ends : {"free", "match-start", "match-both"}
-        Whether the adapted motion equals the desired one at its ends, in angles
-        and rates; the angles at the start always do.
-    budget : tuple of (str, float)
-        Instead of r2 and tracking: the largest value allowed of a fidelity
-        metric. At most one; empty for none.
+    ends : {"free", "match-start", "match-rates", "match-both"}
+        Where the modified motion equals the desired one beside the angles at the
+        start, which it always does: nowhere, in the rates at the start, in the
+        rates at both ends, or in angles and rates at both ends.
+    budget : tuple of Budget
+        Instead of r2 and tracking: the largest values allowed of fidelity
+        metrics, kept together.
+    objective : {"coriolis", "blend", "felt"}
+        What a free motion minimises: the weighted Coriolis vector; the same and a
+        tenth of the felt error, which is how far the total angular acceleration
+        is from the desired one without its Coriolis part; or the felt error alone.
+    optimise : tuple of str
+        Constants that are found together with a free motion.
+    lead_in, lead_out : float
+        Time [s] in which the command table ramps from rest to the maneuver's
+        start, and from its end to rest; 0 for none.
     tolerance : float
         Largest Coriolis component that ``method: zero`` leaves [rad/s^2].
     """
@@ -130,7 +134,11 @@ class Reduction:
     max_iterations: int = 3000
     hold: frozenset[Joint] = frozenset()
     ends: Ends = "free"
-    budget: tuple[tuple[BudgetMetric, float], ...] = (("joint_deviation_relative", 0.05),)
+    budget: tuple[Budget, ...] = (Budget("joint_deviation_relative", 0.05),)
+    objective: Objective = "coriolis"
+    optimise: tuple[FreeParameter, ...] = ()
+    lead_in: float = 0.0
+    lead_out: float = 0.0
     tolerance: float = 1e-4
 
     def __post_init__(self) -> None:

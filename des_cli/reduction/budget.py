@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.profile import BudgetMetric
+from des_cli.model.metric import MetricKey
 from des_cli.model.solution import Solution
 from des_cli.reduction.coarse import coarsen, refine
 from des_cli.reduction.interior import Outcome
@@ -59,7 +59,7 @@ class _Priced:
     outcome: Outcome
 
 
-def spend_budget(problem: Problem, metric: BudgetMetric, budget: float, search: Search) -> Solution:
+def spend_budget(problem: Problem, metric: MetricKey, budget: float, search: Search) -> Solution:
     """Find the most reduction that a budget buys.
 
     Parameters
@@ -105,7 +105,7 @@ def pose_budget(problem: Problem) -> Problem:
 
 
 def _coarse_start(
-    problem: Problem, grid: Transcription, metric: BudgetMetric, budget: float, search: Search
+    problem: Problem, grid: Transcription, metric: MetricKey, budget: float, search: Search
 ) -> tuple[float, Floats] | None:
     """Return price and iterate that a coarser grid finds, or None without one."""
     coarse = coarsen(problem)

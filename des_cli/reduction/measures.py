@@ -10,7 +10,7 @@ import numpy as np
 
 from des_cli.kinematics.chain import Chain
 from des_cli.model.arrays import Floats
-from des_cli.model.profile import BudgetMetric
+from des_cli.model.metric import MetricKey
 from des_cli.reduction.transcription import Expansion, Measure, Transcription
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
@@ -280,7 +280,7 @@ class AttitudeDeviation(Measure):
         return Expansion(self.value(x), gradient, hessian, bend=bend)
 
 
-def measure_of(grid: Transcription, metric: BudgetMetric, budget: float) -> Measure:
+def measure_of(grid: Transcription, metric: MetricKey, budget: float) -> Measure:
     """Return the measure that belongs to a metric of ``fidelity`` and its budget."""
     gravity = grid.problem.gravity
     match metric:
@@ -298,3 +298,4 @@ def measure_of(grid: Transcription, metric: BudgetMetric, budget: float) -> Meas
             return SeatGDeviation(grid, budget, gravity, relative=False)
         case "attitude_error_max_deg":
             return AttitudeDeviation(grid, budget)
+    raise ValueError(f"no budget on {metric} with factors on the rates")

@@ -42,7 +42,7 @@ def solve(
         posed = pose_zero(problem)
         return posed, find_zero(posed, np.diag(problem.r1) > 0.0, wanted.tolerance, search)
     if wanted.budget:
-        ((metric, budget),) = wanted.budget
+        ((metric, budget),) = ((b.metric, b.most) for b in wanted.budget)
         posed = pose_budget(problem)
         return posed, spend_budget(posed, metric, budget, search)
     return problem, find_optimum(problem, search)

@@ -19,8 +19,9 @@ from des_cli.kinematics.orientation import ground_jacobian
 from des_cli.kinematics.response import respond_on
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.machine import JOINTS, Machine
+from des_cli.model.metric import MetricKey
 from des_cli.model.motion import Motion
-from des_cli.model.profile import BudgetMetric, Reduction
+from des_cli.model.profile import Reduction
 from des_cli.model.run import Check
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
@@ -97,7 +98,7 @@ def verify(problem: Problem, solution: Solution, wanted: Reduction) -> tuple[Che
         rise = solution.cost - solution.cost_unreduced
         worse = max(0.0, rise) / max(solution.cost_unreduced, least)
         checks.append(Check("excess of the cost over the desired motion's", worse, COST_TOLERANCE))
-        for metric, budget in wanted.budget:
+        for metric, budget in ((b.metric, b.most) for b in wanted.budget):
             spent = spent_budget(problem, modified, solution.control, metric) / budget
             checks.append(
                 Check(f"excess over the budget on {metric}", spent - 1.0, BOUND_TOLERANCE)
@@ -334,7 +335,7 @@ def _slope_of_budget(
     problem: Problem, control: Floats, direction: Floats, wanted: Reduction
 ) -> float:
     """Return the slope of what a budget's price is on, 0 where there is no budget."""
-    for metric, budget in wanted.budget:
+    for metric, budget in ((b.metric, b.most) for b in wanted.budget):
         ahead, behind = (
             _priced(problem, _motion(problem, moved), moved, metric, budget)
             for moved in (
@@ -347,7 +348,7 @@ def _slope_of_budget(
 
 
 def _priced(
-    problem: Problem, motion: Motion, control: Floats, metric: BudgetMetric, budget: float
+    problem: Problem, motion: Motion, control: Floats, metric: MetricKey, budget: float
 ) -> float:
     """Return a smooth form of a metric over its budget: its square; of a maximum, a mean."""
     if metric != "attitude_error_max_deg":

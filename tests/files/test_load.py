@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from des_cli.errors import FileAccessError, ProfileError, UsageError
 from des_cli.files.load import load_profile
 from des_cli.model.machines import DES
+from des_cli.model.metric import Budget
 from des_cli.model.profile import BodyRates, JointCommands, Profile, Reduction
 
 SMALL = """\
@@ -94,11 +95,11 @@ reduction: {method: zero, algorithm: report-sweep, control: per-joint, axes: rep
 @pytest.mark.parametrize(
     ("section", "budget"),
     [
-        ("", (("joint_deviation_relative", 0.05),)),
-        ("{axes: report}", (("joint_deviation_relative", 0.05),)),
-        ("{budget: 0.1}", (("joint_deviation_relative", 0.1),)),
-        ("{budget: {seat_g_rms_error_g: 0.2}}", (("seat_g_rms_error_g", 0.2),)),
-        ("{budget: 0.1, algorithm: report-sweep}", (("joint_deviation_relative", 0.1),)),
+        ("", (Budget("joint_deviation_relative", 0.05),)),
+        ("{axes: report}", (Budget("joint_deviation_relative", 0.05),)),
+        ("{budget: 0.1}", (Budget("joint_deviation_relative", 0.1),)),
+        ("{budget: {seat_g_rms_error_g: 0.2}}", (Budget("seat_g_rms_error_g", 0.2),)),
+        ("{budget: 0.1, algorithm: report-sweep}", (Budget("joint_deviation_relative", 0.1),)),
         ("{r2: 1}", ()),
         ("{tracking: 1}", ()),
         ("{algorithm: report-sweep}", ()),
