@@ -57,6 +57,16 @@ class Motion:
         return (self.rate_end - self.rate_start) / self.step[:, None]
 
     @cached_property
+    def jerk(self) -> Floats:
+        """Jerk at each interior sample, (n - 2, 3) [rad/s^3].
+
+        The change of the acceleration from one interval to the next, over the time
+        between their middles. Where the rate steps it means nothing.
+        """
+        apart = 0.5 * (self.step[1:] + self.step[:-1])
+        return np.diff(self.acceleration, axis=0) / apart[:, None]
+
+    @cached_property
     def rate_step(self) -> Floats:
         """Jump of the rate at each interior sample, (n - 2, 3) [rad/s]."""
         return self.rate_start[1:] - self.rate_end[:-1]
