@@ -1,0 +1,1 @@
+"""Oracles and helpers of the tests. Nothing in an oracle comes from ``des_cli``."""
