@@ -234,6 +234,18 @@ def position_second_partials(chain: Chain, angles: Floats) -> Floats:
     return chain.position_hessian(angles)
 
 
+def row_transform(row: DHRow, turn: float) -> Floats:
+    """Return A_i of one row with its variable at an angle [rad], (4, 4) [m]."""
+    angle = row.offset + (row.sign * turn if row.variable else 0.0)
+    placed: Floats = _rot_x(row.alpha) @ _shift(0, row.a) @ _rot_z(angle)
+    return placed @ shift_along_z(row.d)
+
+
+def shift_along_z(distance: float) -> Floats:
+    """Return the transform that shifts along z, (4, 4) [m]."""
+    return _shift(2, distance)
+
+
 def _append(product: Floats, joint: int, step: Floats) -> Floats:
     """Multiply the coefficients of a product, (3, 3, 3, r, c), by a joint's step."""
     before = np.moveaxis(product, joint, 0)[0]  # the only part that is filled so far

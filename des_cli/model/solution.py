@@ -47,10 +47,12 @@ class Solution:
     message : str
         One sentence for a person.
     control : (n, m) array
-        The factor p at each sample (m = 1), or one per joint (m = 3).
+        The factor p at each sample (m = 1), or one per joint (m = 3); a free motion
+        has none (m = 0).
     modified : Motion
-    adjoint : (n, 3) array
-        Costate of the joint angles at each sample.
+    adjoint : (n, m) array
+        Costate of the joint angles at each sample (m = 3); of a free motion, whose
+        dynamics are eliminated, there is none (m = 0).
     cost, cost_unreduced : float
         J of this solution, and of the desired motion (p = 1).
     optimality : float
@@ -73,7 +75,7 @@ class Solution:
     def __post_init__(self) -> None:
         n = len(self.modified.t)
         freeze(self, "control", (n, None))
-        freeze(self, "adjoint", (n, 3))
+        freeze(self, "adjoint", (n, None))
 
     @property
     def usable(self) -> bool:

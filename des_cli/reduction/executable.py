@@ -1,53 +1,138 @@
-"""The nearest motion to a desired one that the machine can execute.
+"""The nearest motion to a desired one that the machine can execute, as a spline.
 
-A separate convex problem for each joint, solved together: angles and rates
-that are linear between samples, inside the limits, nearest to the desired ones,
+A convex problem over control points: inside the limits, jerk included, nearest to the
+desired angles and rates,
 
     minimise 1/2 int (theta - Theta)^2 + tau^2 (theta' - Theta')^2 dt.
 
-It rounds the corner where a desired rate steps, instead of leaving it to a
-factor that would slow every joint for it.
+It rounds the corner where a desired rate steps, instead of leaving it to a factor that
+would slow every joint for it.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from des_cli.model.arrays import Flags, Floats
-from des_cli.model.machine import JOINTS, Machine
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import JOINTS, JointLimits, Machine
 from des_cli.model.motion import Motion
-from des_cli.reduction.constraints import limit_rows
-from des_cli.reduction.interior import Outcome, minimise
+from des_cli.reduction.limit_rows import LimitRows
 from des_cli.reduction.limits import find_violations, measure_peaks
-from des_cli.reduction.rates import DesiredRates
-from des_cli.reduction.transcription import Expansion
+from des_cli.reduction.reference import sample_motion
+from des_cli.solver.band import SymmetricBand
+from des_cli.solver.quadratic import minimise_quadratic
+from des_cli.solver.spline import FEWEST_INTERVALS, ORDER, Ends, SplineGrid
+
+KNOT_STEP = 0.02
+"""Time between knots [s], 50 Hz: finer ones change the reduction of the Cobra by less than
+0.01 %, and a joint needs half a second from standstill to its full acceleration."""
+
+FEWEST_KNOTS = 50
+"""Knots of a short maneuver, unless its table has fewer rows."""
 
 TAU = 0.05
 """Time [s] that weighs a rate error against an angle error: about what the DES's
 cab needs to round a corner."""
 
-STRAIGHT = 1e-4
-"""Difference of an angle [rad] from the integral of its rates that is the quadrature's
-alone: a joint that keeps its limits is then left as it is."""
-
-TOLERANCE = 1e-9
-MAX_ITERATIONS = 200
+SMOOTHING = 1e-9
+"""Weight [s^6] on the squared jerk: it determines what the data do not."""
 
 CLEAR = 1e-3
-"""Relative distance that the nearest motion keeps from rate and acceleration limits,
-so that the reduction starts from inside them."""
+"""Relative distance from rate, acceleration and jerk limits, so that the reduction starts
+from inside them."""
+
+CLEAR_ANGLE = 1e-6
+"""The same from angle limits."""
 
 CORNER = 0.5
-"""Share of the acceleration limit at which a corner is rounded, unless the desired
-motion asks for more elsewhere. A corner that is rounded at the limit itself leaves
-the reduction no room: a scalar factor would have to stay at one or below, for
+"""Share of the acceleration and jerk limits at which a corner is rounded for factors on the
+rates, unless the desired motion asks for more elsewhere. A corner that is rounded at the
+limit itself leaves a scalar factor no room: it would have to stay at one or below, for
 every joint, wherever one joint turns a corner."""
 
+STRAIGHT = 1e-4
+"""Difference of an angle [rad] from the integral of its rates that is the quadrature's
+alone: a motion that keeps its limits is then left as it is."""
 
-def nearest_executable(machine: Machine, desired: Motion) -> tuple[Motion, Outcome | None]:
-    """Return the nearest motion inside the machine's limits, and how it was found.
+
+@dataclass(frozen=True)
+class ExecutableSpline:
+    """A motion that keeps the limits, or the nearest miss.
+
+    Parameters
+    ----------
+    grid : SplineGrid
+    control : (n, 3) array
+        [rad]
+    trouble : str
+        Empty, or why no motion keeps the limits.
+    """
+
+    grid: SplineGrid
+    control: Floats
+    trouble: str = ""
+
+
+def knot_grid(t: Floats, multiple: int = 1) -> SplineGrid:
+    """Return a grid of knots for a table's times: what the motion needs, not its rows.
+
+    Parameters
+    ----------
+    t : (m,) array
+        [s]
+    multiple : int
+        The number of intervals is a multiple of it, for coarser grids inside it.
+    """
+    duration = float(t[-1] - t[0])
+    rows = len(t) - 1
+    wanted = max(int(np.ceil(duration / KNOT_STEP - 1e-9)), FEWEST_KNOTS)
+    count = max(min(wanted, rows), FEWEST_INTERVALS)
+    count = multiple * max(1, -(-count // multiple))
+    return SplineGrid(float(t[0]), duration / count, count)
+
+
+def fit_executable(
+    grid: SplineGrid, desired: Motion, limits: Sequence[JointLimits], ends: Ends
+) -> ExecutableSpline:
+    """Return the spline nearest to a motion inside limits.
+
+    Parameters
+    ----------
+    grid : SplineGrid
+        Over the whole motion.
+    desired : Motion
+    limits : sequence of JointLimits
+        For arm, fork, cab; infinite where there is none.
+    ends : Ends
+        Where value or rate equal the desired ones.
+    """
+    base = _through_ends(grid, desired, ends)
+    hessian, linear = _least_squares(grid, desired, base)
+    eased = [
+        replace(
+            limit,
+            angle=limit.angle * (1.0 - CLEAR_ANGLE),
+            rate=limit.rate * (1.0 - CLEAR),
+            acceleration=limit.acceleration * (1.0 - CLEAR),
+            jerk=limit.jerk * (1.0 - CLEAR),
+        )
+        for limit in limits
+    ]
+    outcome = minimise_quadratic(hessian, linear, LimitRows(grid, base, eased, ends), ends)
+    trouble = ""
+    if not outcome.feasible:
+        trouble = _start_trouble(desired, limits) or (
+            "no motion near the desired one keeps the limits: the search for it ended with "
+            f"the limits off by {outcome.infeasibility:.1e} (relative)"
+        )
+    return ExecutableSpline(grid, base + outcome.x, trouble)
+
+
+def nearest_executable(machine: Machine, desired: Motion) -> tuple[Motion, str]:
+    """Return the nearest motion inside the machine's limits for factors on its rates.
 
     Parameters
     ----------
@@ -59,105 +144,109 @@ def nearest_executable(machine: Machine, desired: Motion) -> tuple[Motion, Outco
     -------
     motion : Motion
         Its angles are the integrals of its rates, which do not step.
-    outcome : Outcome, optional
-        Not ``converged`` where no motion from the desired start keeps the limits;
-        None where the desired motion keeps them itself.
+    trouble : str
+        Empty, or why there is none; the motion then is not inside.
     """
-    straight = _straighten(desired)
-    kept = _keeps(machine, desired, straight)
-    if np.all(kept):
-        return straight, None
-    program = _Nearest(_eased(machine, desired), desired)
-    start = np.hstack([desired.angle, program.rate])
-    outcome = minimise(
-        program, start, tolerance=TOLERANCE, max_iterations=MAX_ITERATIONS, barrier=1.0
+    straight = integrate_rates(desired.t, desired.angle[0], desired.rate)
+    near = np.max(np.abs(straight.angle - desired.angle)) <= STRAIGHT
+    broken = find_violations(machine, desired, "desired")
+    if near and not broken and not find_violations(machine, straight, "desired"):
+        return straight, ""
+    ends = start_kept(rates=False)
+    found = fit_executable(knot_grid(desired.t), desired, _eased(machine, desired), ends)
+    return sample_spline(found, desired.t), found.trouble
+
+
+def start_kept(*, rates: bool) -> Ends:
+    """Return the ends of a motion that starts where the desired one does."""
+    yes, no = np.ones(3, dtype=bool), np.zeros(3, dtype=bool)
+    return Ends(yes, yes if rates else no, no, no, no)
+
+
+def sample_spline(spline: ExecutableSpline, t: Floats) -> Motion:
+    """Return a spline as a table plays it: rates linear between the samples.
+
+    Means of accelerations and jerks never exceed what they are means of, so that the
+    table keeps every limit that the spline keeps.
+    """
+    first = spline.grid.values(spline.control, t[:1])[0]
+    return integrate_rates(t, first, spline.grid.values(spline.control, t, 1))
+
+
+def integrate_rates(t: Floats, first: Floats, rate: Floats) -> Motion:
+    """Return the motion from given angles with rates that are linear between samples."""
+    increment = np.cumsum(0.5 * np.diff(t)[:, None] * (rate[:-1] + rate[1:]), axis=0)
+    return Motion(t, first + np.vstack([np.zeros(3), increment]), rate[:-1], rate[1:])
+
+
+def _through_ends(grid: SplineGrid, desired: Motion, ends: Ends) -> Floats:
+    """Return the control points of the cubic that has the desired values at both ends.
+
+    Without conditions at the end it is the straight line from the start.
+    """
+    first, rate = desired.angle[0], desired.rate_start[0]
+    time = (grid.greville - grid.start)[:, None]
+    if not (np.any(ends.end_value) or np.any(ends.end_rate)):
+        return np.asarray(first + rate * time)
+    span, h = grid.duration, grid.step
+    rise = desired.angle[-1] - first
+    last = desired.rate_end[-1]
+    square = (3.0 * rise / span - 2.0 * rate - last) / span
+    cube = (rate + last - 2.0 * rise / span) / span**2
+    # control points of powers of time: their polar forms at a knot and its neighbours
+    return np.asarray(
+        first + rate * time + square * (time**2 - h**2 / 3.0) + cube * time * (time**2 - h**2)
     )
-    rate = np.where(kept, desired.rate, outcome.x[:, 3:])
-    return _integrate(desired, rate), outcome
 
 
-def _integrate(desired: Motion, rate: Floats) -> Motion:
-    """Return the motion from the desired start with rates that are linear between samples."""
-    increment = np.cumsum(0.5 * desired.step[:, None] * (rate[:-1] + rate[1:]), axis=0)
-    angle = desired.angle[0] + np.vstack([np.zeros(3), increment])
-    return Motion(desired.t, angle, rate[:-1], rate[1:])
+def _least_squares(
+    grid: SplineGrid, desired: Motion, base: Floats
+) -> tuple[SymmetricBand, Floats]:
+    """Return the quadratic cost of a deviation from the base: Hessian and linear part."""
+    k, h = grid.intervals, grid.step
+    nodes, weight = np.polynomial.legendre.leggauss(4)
+    u, weight = 0.5 * (nodes + 1.0), 0.5 * h * weight
+    value, slope = grid.basis(u, 0), grid.basis(u, 1)
+    square = (value.T * weight) @ value + TAU**2 * (slope.T * weight) @ slope
+    hessian = SymmetricBand(grid.points, len(JOINTS))
+    for b in range(ORDER):
+        for a in range(b, ORDER):
+            hessian.data[b : b + k, :, len(JOINTS) * (a - b)] += square[a, b]
+    hessian.add_differences(np.full((k, len(JOINTS)), SMOOTHING * h), 3, h)
+    t = grid.start + h * (np.arange(k)[:, None] + u)
+    angle, rate, _ = sample_motion(desired, t.reshape(-1))
+    off_angle = angle.reshape(k, -1, 3) - grid.at_fractions(base, u, 0)
+    off_rate = rate.reshape(k, -1, 3) - grid.at_fractions(base, u, 1)
+    linear = np.zeros((grid.points, len(JOINTS)))
+    for a in range(ORDER):
+        linear[a : a + k] += np.einsum("g,kgj->kj", weight * value[:, a], off_angle)
+        linear[a : a + k] += TAU**2 * np.einsum("g,kgj->kj", weight * slope[:, a], off_rate)
+    return hessian, linear
 
 
-def _straighten(desired: Motion) -> Motion:
-    """Return the desired motion with its rates linear between samples, and its angles theirs."""
-    return _integrate(desired, desired.rate)
-
-
-def _keeps(machine: Machine, desired: Motion, straight: Motion) -> Flags:
-    """Return the joints, (3,), whose desired motion is executable as it stands."""
-    broken = {
-        violation.joint
-        for motion in (desired, straight)
-        for violation in find_violations(machine, motion, "desired")
-    }
-    near = np.max(np.abs(straight.angle - desired.angle), axis=0) <= STRAIGHT
-    return np.asarray(near & np.array([joint not in broken for joint in JOINTS]))
-
-
-def _eased(machine: Machine, desired: Motion) -> Machine:
-    """Return the machine with its limits drawn in."""
-    asked = measure_peaks(desired).acceleration
-    arm, fork, cab = (
+def _eased(machine: Machine, desired: Motion) -> list[JointLimits]:
+    """Return the limits within which corners are rounded for factors on the rates."""
+    peaks = measure_peaks(desired)
+    return [
         replace(
             limit,
-            angle=limit.angle * (1.0 - CLEAR * 1e-3),
-            rate=limit.rate * (1.0 - CLEAR),
-            acceleration=float(
-                np.clip(peak, CORNER * limit.acceleration, (1.0 - CLEAR) * limit.acceleration)
-            ),
+            acceleration=float(np.clip(peak, CORNER * limit.acceleration, limit.acceleration)),
+            jerk=limit.jerk if np.isinf(limit.jerk) else CORNER * limit.jerk,
         )
-        for limit, peak in zip(machine.limits, asked, strict=True)
-    )
-    return replace(machine, limits=(arm, fork, cab))
+        for limit, peak in zip(machine.limits, peaks.acceleration, strict=True)
+    ]
 
 
-class _Nearest:
-    """The convex problem; its unknowns are the angles and the rates at each sample."""
-
-    scale = 1.0
-
-    def __init__(self, machine: Machine, desired: Motion) -> None:
-        n = len(desired.t)
-        self.desired = desired
-        self.rate = desired.rate
-        self.half = 0.5 * desired.step[:, None]
-        self.weight = np.zeros(n)
-        self.weight[:-1] += self.half[:, 0]
-        self.weight[1:] += self.half[:, 0]
-        self.pinned = np.zeros((n, 6), dtype=bool)
-        self.pinned[0, :3] = True
-        # a factor on a unit rate is a rate
-        rates = DesiredRates(np.ones((n, 3)), np.eye(3))
-        self.rows = limit_rows(machine, rates, desired.step, 6)
-        self._hessian = self.weight[:, None, None] * np.diag([1.0] * 3 + [TAU**2] * 3)
-        eye = np.broadcast_to(np.eye(3), (n - 1, 3, 3))
-        half = self.half[:, :, None] * eye
-        self._jacobian = (
-            np.concatenate([-eye, -half], axis=2),
-            np.concatenate([eye, -half], axis=2),
-        )
-
-    def _off(self, x: Floats) -> Floats:
-        return x - np.hstack([self.desired.angle, self.rate])
-
-    def cost(self, x: Floats) -> float:
-        off = self._off(x)
-        return 0.5 * float(np.einsum("ki,kij,kj->", off, self._hessian, off))
-
-    def expand(self, x: Floats) -> Expansion:
-        gradient = np.einsum("kij,kj->ki", self._hessian, self._off(x))
-        return Expansion(self.cost(x), gradient, self._hessian)
-
-    def defect(self, x: Floats) -> Floats:
-        return np.asarray(np.diff(x[:, :3], axis=0) - self.half * (x[:-1, 3:] + x[1:, 3:]))
-
-    def defect_jacobian(self, x: Floats) -> tuple[Floats, Floats]:
-        return self._jacobian
-
-    def defect_curvature(self, x: Floats, multiplier: Floats) -> None:
-        return None
+def _start_trouble(desired: Motion, limits: Sequence[JointLimits]) -> str:
+    """Say where the start itself is beyond a limit."""
+    for j, (joint, limit) in enumerate(zip(JOINTS, limits, strict=True)):
+        for what, value, bound, unit in (
+            ("is", abs(float(desired.angle[0, j])), limit.angle, "rad"),
+            ("turns with", abs(float(desired.rate_start[0, j])), limit.rate, "rad/s"),
+        ):
+            if value > bound:
+                return (
+                    f"the {joint} {what} {value:.4g} {unit} at the start, outside its limit of "
+                    f"{bound:.4g} {unit}, at t = {desired.t[0]:g} s; start it inside"
+                )
+    return ""

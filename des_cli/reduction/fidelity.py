@@ -1,0 +1,111 @@
+"""The fidelity metrics, measured on motions as their tables play them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from des_cli.kinematics.attitude import geodesic_angle
+from des_cli.kinematics.chain import Chain, seat_rotation
+from des_cli.kinematics.response import respond_on
+from des_cli.model.arrays import Floats
+from des_cli.model.metric import MetricKey
+from des_cli.model.motion import Motion, integrate_sides
+from des_cli.model.response import Response
+
+
+class Deviation:
+    """How far a modified motion is from its reference, by each metric.
+
+    Parameters
+    ----------
+    reference, modified : Motion
+        On the same samples.
+    before, after : Response
+        Of the two.
+    chains : tuple of Chain
+        Of the two: the seat may be fixed otherwise in the modified one.
+    control : (n, m) array, optional
+        Factors on the rates; of a free motion there are none.
+    """
+
+    def __init__(
+        self,
+        reference: Motion,
+        modified: Motion,
+        before: Response,
+        after: Response,
+        chains: tuple[Chain, Chain],
+        control: Floats | None = None,
+    ) -> None:
+        self.reference, self.modified = reference, modified
+        self.before, self.after = before, after
+        self.chains, self.control = chains, control
+
+    @classmethod
+    def between(
+        cls,
+        reference: Motion,
+        modified: Motion,
+        chains: tuple[Chain, Chain],
+        gravity: float,
+        control: Floats | None = None,
+    ) -> Deviation:
+        """Evaluate both responses under a gravity [m/s^2] and compare."""
+        before, after = (
+            respond_on(chain, gravity, motion)
+            for chain, motion in zip(chains, (reference, modified), strict=True)
+        )
+        return cls(reference, modified, before, after, chains, control)
+
+    def value(self, metric: MetricKey) -> float:
+        """Return a metric, in its unit."""
+        match metric:
+            case "joint_deviation_relative":
+                return self._share(
+                    self.modified.angle_sides - self.reference.angle_sides,
+                    self.reference.angle_sides,
+                )
+            case "joint_deviation_relative_squared":
+                return self.value("joint_deviation_relative") ** 2
+            case "mean_square_one_minus_p":
+                return self._mean_square_one_minus_p()
+            case "seat_rate_deviation_relative":
+                return self._share(
+                    self.after.seat_rate - self.before.seat_rate, self.before.seat_rate
+                )
+            case "seat_g_deviation_relative":
+                return self._share(self.after.seat_g - self.before.seat_g, self.before.seat_g)
+            case "seat_g_rms_error_g":
+                return self._rms(self.after.seat_g - self.before.seat_g)
+            case "seat_angular_acceleration_deviation_relative":
+                return self._share(self._turning_error, self.before.seat_angular_acceleration)
+            case "seat_angular_acceleration_rms_error_rad_s2":
+                return self._rms(self._turning_error)
+            case "attitude_error_max_deg":
+                one, other = (
+                    seat_rotation(chain, motion.angle)
+                    for chain, motion in zip(
+                        self.chains, (self.reference, self.modified), strict=True
+                    )
+                )
+                return float(np.degrees(np.max(geodesic_angle(one, other))))
+
+    @property
+    def _turning_error(self) -> Floats:
+        return self.after.seat_angular_acceleration - self.before.seat_angular_acceleration
+
+    def _energy(self, vectors: Floats) -> float:
+        return float(integrate_sides(self.reference.step, np.sum(vectors**2, axis=-1)))
+
+    def _share(self, off: Floats, size: Floats) -> float:
+        return float(np.sqrt(self._energy(off) / max(self._energy(size), 1e-300)))
+
+    def _rms(self, off: Floats) -> float:
+        return float(np.sqrt(self._energy(off) / self.reference.step.sum()))
+
+    def _mean_square_one_minus_p(self) -> float:
+        if self.control is None or not self.control.shape[1]:
+            return float("nan")
+        idle = (1.0 - np.stack([self.control[:-1], self.control[1:]], axis=1)) ** 2
+        step = self.reference.step
+        return float(integrate_sides(step, idle.mean(axis=2)) / step.sum())

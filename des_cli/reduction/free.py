@@ -1,0 +1,428 @@
+"""The free motion with the least cross-coupling inside limits and budgets.
+
+The joints move freely: a spline of each, from an executable motion near the desired one
+to the optimum, every iterate inside the limits and within the budgets.
+
+A budget on what is felt makes a problem with one optimum. Budgets on joint angles or on
+G alone leave fast motions free that neither sees: the optimum chatters, and there are
+several. Such a problem is solved on a coarse grid first, from two starts (the executable
+motion, and down from budgets many times as large), and then refined.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.coriolis import coriolis
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import Seat
+from des_cli.model.metric import METRICS, Budget, MetricKey
+from des_cli.model.motion import Motion, integrate_sides
+from des_cli.model.profile import Reduction
+from des_cli.model.solution import Iteration, Solution, Status
+from des_cli.reduction.executable import (
+    ExecutableSpline,
+    fit_executable,
+    knot_grid,
+    sample_spline,
+)
+from des_cli.reduction.fidelity import Deviation
+from des_cli.reduction.free_problem import FreeTask, cross_coupling, pose_motion, turned_seat
+from des_cli.reduction.inside import find_inside
+from des_cli.reduction.limit_rows import Tie
+from des_cli.reduction.motion_program import MotionProgram
+from des_cli.reduction.ties import tie_reversals
+from des_cli.solver.barrier import Options, Outcome, Step, minimise
+from des_cli.solver.spline import SplineGrid
+
+WELL_POSED: frozenset[MetricKey] = frozenset(
+    {
+        "seat_rate_deviation_relative",
+        "seat_angular_acceleration_deviation_relative",
+        "seat_angular_acceleration_rms_error_rad_s2",
+    }
+)
+"""Metrics that see fast motions, so that a budget on one of them leaves one optimum."""
+
+NOTHING = 1e-18
+"""Mean square of the weighted cross-coupling [rad^2/s^4] below which there is none."""
+
+LONG, COARSE = 4000, 1000
+"""Intervals from which a well-posed problem is solved on a coarser grid first, and the most
+that this has."""
+
+FEW = 250
+"""The same of an ill-posed one, which always is."""
+
+DOWN = (16.0, 8.0, 4.0, 2.0, 1.0)
+"""Multiples of the budgets that the second start of an ill-posed problem comes down by."""
+
+GAP, TOLERANCE = 1e-8, 1e-6
+"""Where a minimisation ends: complementarity, relative to the desired cross-coupling, and
+first-order conditions, relative to the gradients at its start."""
+
+ROUGH_GAP = 1e-3
+"""Where it ends on a coarser grid: far enough inside to be inside on a finer one too."""
+
+WARM_GAP = 1e-2
+"""Complementarity that a start near the optimum begins with."""
+
+ACCEPTABLE = 1e-4
+"""Complementarity at which a search that did not converge is good enough to be used: its
+cost is within this of a minimum's."""
+
+ROOM = 2e-4
+"""Share of each budget that is left to the table, which is a little other than the spline."""
+
+SETTLINGS = 6
+"""Solutions with ever tighter budgets until the table keeps them."""
+
+TOUCHING = 1.0 - 1e-9
+"""Share of a budget that a table may spend."""
+
+
+@dataclass(frozen=True)
+class FreeResult:
+    """A free motion, and what it started from.
+
+    Parameters
+    ----------
+    desired : Motion
+        The executable motion nearest to the reference.
+    solution : Solution
+    seat : Seat
+        As fixed in the modified motion.
+    """
+
+    desired: Motion
+    solution: Solution
+    seat: Seat
+
+
+@dataclass
+class _Log:
+    """One numbered log over all minimisations of a solution, within one limit."""
+
+    limit: int
+    report: Callable[[Iteration], None] | None
+    lines: list[Iteration] = field(default_factory=list)
+
+    @property
+    def left(self) -> int:
+        return max(0, self.limit - len(self.lines))
+
+    def __call__(self, step: Step) -> None:
+        line = Iteration(len(self.lines), step.cost, 0.0, step.optimality, step.length)
+        self.lines.append(line)
+        if self.report is not None:
+            self.report(line)
+
+
+def find_free_motion(
+    task: FreeTask, report: Callable[[Iteration], None] | None = None
+) -> FreeResult:
+    """Find the motion with the least cost inside limits and budgets.
+
+    Parameters
+    ----------
+    task : FreeTask
+    report : callable, optional
+        Called with each line of the solver's log.
+
+    Returns
+    -------
+    FreeResult
+        Its solution is ``infeasible`` where no executable motion keeps the budgets, and
+        passed through where the desired motion makes no cross-coupling.
+    """
+    search = _Search(task, _Log(task.reduction.max_iterations, report))
+    return search.run()
+
+
+class _Search:
+    def __init__(self, task: FreeTask, log: _Log) -> None:
+        self.task, self.log = task, log
+        self.t = task.reference.t
+        budget = task.reduction.budget
+        felt = any(b.metric in WELL_POSED for b in budget)
+        self.well_posed = felt or task.reduction.objective != "coriolis"
+
+    def run(self) -> FreeResult:
+        grids = self._grids()
+        fits = [self._fit(grid) for grid in grids]
+        finest = fits[-1]
+        desired = sample_spline(finest, self.t)
+        if finest.trouble:
+            return self._refused(desired, finest.trouble)
+        energy = cross_coupling(self.task, finest.grid)
+        if energy <= NOTHING * finest.grid.duration:
+            return self._passed_through(desired)
+        budgets = tuple(replace(b, most=b.most * (1.0 - ROOM)) for b in self.task.reduction.budget)
+        outcome: Outcome | None = None
+        x = np.zeros(0)
+        for level, fit in enumerate(fits):
+            last = level == len(fits) - 1
+            program = self._program(fit, budgets)
+            if outcome is None:
+                started = self._start(program, fit, budgets, alone=last)
+                if isinstance(started, str):
+                    return self._refused(desired, started)
+                x, warm = started
+            else:
+                x, warm = _refined(fits[level - 1], fit, x), True
+                inside = find_inside(program, x, self.log)
+                if inside is None:
+                    x, warm = np.zeros(program.size), False
+                    inside = find_inside(program, x, self.log)
+                if inside is None:
+                    return self._refused(desired, self._unreachable(program))
+                x = inside
+            outcome = self._minimise(program, x, rough=not last, warm=warm)
+            x = outcome.x
+        assert outcome is not None
+        return self._settled(finest, desired, budgets, outcome)
+
+    def _grids(self) -> list[SplineGrid]:
+        """Return the grids to solve on, the last one that of the result."""
+        natural = knot_grid(self.t).intervals
+        most = COARSE if self.well_posed else FEW
+        doublings = 0
+        if natural > (LONG if self.well_posed else FEW):
+            doublings = int(np.ceil(np.log2(natural / most)))
+        finest = knot_grid(self.t, 2**doublings)
+        steps = [2**doublings, 1] if self.well_posed else [2**d for d in range(doublings, -1, -1)]
+        return [
+            SplineGrid(finest.start, finest.step * each, finest.intervals // each)
+            for each in dict.fromkeys(steps)
+        ]
+
+    def _fit(self, grid: SplineGrid) -> ExecutableSpline:
+        task = self.task
+        return fit_executable(grid, task.reference, task.limits, task.base_ends)
+
+    def _program(self, fit: ExecutableSpline, budgets: Sequence[Budget]) -> MotionProgram:
+        ties: tuple[Tie, ...] = ()
+        if self.task.reduction.control == "per-joint":
+            ties = tie_reversals(fit.grid, fit.control)
+        task = self._with_budgets(budgets)
+        return MotionProgram(pose_motion(task, fit.grid, fit.control, ties))
+
+    def _with_budgets(self, budgets: Sequence[Budget]) -> FreeTask:
+        reduction: Reduction = replace(self.task.reduction, budget=tuple(budgets))
+        return replace(self.task, reduction=reduction)
+
+    def _start(
+        self,
+        program: MotionProgram,
+        fit: ExecutableSpline,
+        budgets: Sequence[Budget],
+        *,
+        alone: bool,
+    ) -> tuple[Floats, bool] | str:
+        """Return where to begin and whether that is near the optimum, or why nowhere."""
+        inside = find_inside(program, np.zeros(program.size), self.log)
+        if inside is None:
+            return self._unreachable(program)
+        if self.well_posed:
+            return inside, False
+        first = self._minimise(program, inside, rough=True, warm=False)
+        second = self._from_above(fit, budgets)
+        best = first
+        if second is not None and second.values.cost < first.values.cost:
+            best = second
+        return best.x, True
+
+    def _from_above(self, fit: ExecutableSpline, budgets: Sequence[Budget]) -> Outcome | None:
+        """Return the solution that is reached from budgets many times as large."""
+        outcome: Outcome | None = None
+        for multiple in DOWN:
+            looser = [replace(b, most=_looser(b, multiple)) for b in budgets]
+            program = self._program(fit, looser)
+            x = np.zeros(program.size) if outcome is None else outcome.x
+            inside = find_inside(program, x, self.log)
+            if inside is None:
+                return None
+            outcome = self._minimise(program, inside, rough=True, warm=outcome is not None)
+        return outcome
+
+    def _minimise(
+        self, program: MotionProgram, x: Floats, *, rough: bool, warm: bool
+    ) -> Outcome:
+        options = Options(
+            gap=ROUGH_GAP if rough else GAP,
+            tolerance=TOLERANCE,
+            start_gap=WARM_GAP if warm else 1.0,
+            max_iterations=min(EACH, self.log.left) if rough else self.log.left,
+        )
+        return minimise(program, x, options, self.log)
+
+    def _settled(
+        self,
+        fit: ExecutableSpline,
+        desired: Motion,
+        budgets: Sequence[Budget],
+        outcome: Outcome,
+    ) -> FreeResult:
+        """Tighten the budgets until the table keeps what was asked of the spline."""
+        asked = {b.metric: b.most for b in self.task.reduction.budget}
+        for _ in range(SETTLINGS):
+            program = self._program(fit, budgets)
+            modified, seat = self._table(program, fit, outcome.x)
+            deviation = Deviation.between(
+                self.task.reference,
+                modified,
+                (self.task.chain, chain_of(self.task.machine, seat)),
+                self.task.machine.gravity,
+            )
+            spent = {m: deviation.value(m) / most for m, most in asked.items()}
+            if max(spent.values(), default=0.0) <= TOUCHING:
+                break
+            budgets = [
+                replace(b, most=b.most * min(1.0, TOUCHING / spent[b.metric])) for b in budgets
+            ]
+            program = self._program(fit, budgets)
+            inside = find_inside(program, _drawn_in(program, outcome.x), self.log)
+            if inside is None:
+                break
+            outcome = self._minimise(program, inside, rough=False, warm=True)
+        return FreeResult(desired, self._solution(outcome, modified, desired, seat), seat)
+
+    def _table(
+        self, program: MotionProgram, fit: ExecutableSpline, x: Floats
+    ) -> tuple[Motion, Seat]:
+        spline = ExecutableSpline(fit.grid, fit.control + program.control(x))
+        seat = self.task.seat
+        if program.free_angles:
+            seat = turned_seat(self.task, program.seat_angles(x))
+        return sample_spline(spline, self.t), seat
+
+    def _solution(
+        self, outcome: Outcome, modified: Motion, desired: Motion, seat: Seat
+    ) -> Solution:
+        status, message = self._verdict(outcome)
+        return Solution(
+            status=status,
+            message=message,
+            control=self._factors(modified, desired),
+            modified=modified,
+            adjoint=np.zeros((len(self.t), 0)),
+            cost=self._cost(modified, seat),
+            cost_unreduced=self._cost(self.task.reference, self.task.seat),
+            optimality=outcome.optimality,
+            iterations=len(self.log.lines),
+            log=tuple(self.log.lines),
+        )
+
+    def _verdict(self, outcome: Outcome) -> tuple[Status, str]:
+        steps = f"{len(self.log.lines)} steps in all"
+        if outcome.status == "converged":
+            return "converged", f"first-order optimal to {outcome.optimality:.1e}, {steps}"
+        off = (
+            f"the first-order conditions are off by {outcome.optimality:.1e}, "
+            f"the gap is {outcome.gap:.1e}"
+        )
+        if outcome.gap <= ACCEPTABLE:
+            return "acceptable", f"short of the tolerance {TOLERANCE:g}: {off}; {steps}"
+        if outcome.status == "iteration-limit":
+            limit = self.log.limit
+            return "iteration-limit", f"{off} after {steps}; raise max_iterations ({limit})"
+        return "diverged", f"no step makes it better although {off}; {steps}"
+
+    def _factors(self, modified: Motion, desired: Motion) -> Floats:
+        """Return the factors on the desired rates that a tied motion has, one a joint."""
+        if self.task.reduction.control != "per-joint":
+            return np.zeros((len(self.t), 0))
+        moving = np.abs(desired.rate) > MOVING * np.max(np.abs(desired.rate), axis=0)
+        return np.divide(modified.rate, desired.rate, out=np.ones_like(desired.rate), where=moving)
+
+    def _cost(self, motion: Motion, seat: Seat) -> float:
+        """Return J = 1/2 int c' R1 c dt of a motion as its table plays it."""
+        chain = chain_of(self.task.machine, seat)
+        c = coriolis(chain, motion.angle_sides, motion.rate_sides, "seat")
+        running = np.sum((c @ self.task.reduction.r1) * c, axis=-1)
+        return 0.5 * float(integrate_sides(motion.step, running))
+
+    def _passed_through(self, desired: Motion) -> FreeResult:
+        solution = Solution(
+            status="converged",
+            message="the desired motion makes no cross-coupling: it is passed through",
+            control=self._factors(desired, desired),
+            modified=desired,
+            adjoint=np.zeros((len(self.t), 0)),
+            cost=self._cost(desired, self.task.seat),
+            cost_unreduced=self._cost(self.task.reference, self.task.seat),
+            optimality=0.0,
+            iterations=0,
+        )
+        return FreeResult(desired, solution, self.task.seat)
+
+    def _refused(self, desired: Motion, why: str) -> FreeResult:
+        nan = float("nan")
+        solution = Solution(
+            status="infeasible",
+            message=why,
+            control=self._factors(desired, desired),
+            modified=desired,
+            adjoint=np.zeros((len(self.t), 0)),
+            cost=nan,
+            cost_unreduced=nan,
+            optimality=nan,
+            iterations=len(self.log.lines),
+            log=tuple(self.log.lines),
+        )
+        return FreeResult(desired, solution, self.task.seat)
+
+    def _unreachable(self, program: MotionProgram) -> str:
+        """Say which budgets the limits alone exceed."""
+        values = program.values(np.zeros(program.size))
+        budgets = [b for b in self.task.reduction.budget if b.metric != "attitude_error_max_deg"]
+        over = [
+            f"{METRICS[b.metric].label} {np.sqrt(value) * b.most:.3g} instead of {b.most:.3g}"
+            for b, value in zip(budgets, values.budgets, strict=True)
+            if value >= 1.0
+        ]
+        if over:
+            return (
+                "keeping the machine's limits alone costs more than the budgets allow: "
+                f"{', '.join(over)}; smooth the motion, allow more, or take --limits warn"
+            )
+        return "no motion near the desired one keeps the bounds on what the occupant may get"
+
+
+EACH = 120
+"""Newton steps of one rough minimisation, at the most."""
+
+MOVING = 1e-6
+"""Rate relative to its largest below which a factor on it means nothing."""
+
+MOST_SHARE = 1e3
+"""Largest budget that the way down from above starts with."""
+
+DRAWN_IN = (1.0 - 1e-4, 1.0 - 1e-3, 1.0 - 1e-2, 0.95, 0.9, 0.5)
+"""Shares of a deviation that are tried until a point is inside again."""
+
+
+def _looser(budget: Budget, multiple: float) -> float:
+    return min(budget.most * multiple, max(budget.most, MOST_SHARE))
+
+
+def _refined(coarse: ExecutableSpline, fine: ExecutableSpline, x: Floats) -> Floats:
+    """Return a coarse solution on a fine grid, as a deviation from the fine base."""
+    size = coarse.control.size
+    grid, control = coarse.grid, coarse.control + x[:size].reshape(coarse.control.shape)
+    while grid.intervals < fine.grid.intervals:
+        grid, control = grid.refined(control)
+    return np.concatenate([(control - fine.control).reshape(-1), x[size:]])
+
+
+def _drawn_in(program: MotionProgram, x: Floats) -> Floats:
+    """Return the largest tried share of a deviation that is inside, or a small one."""
+    for share in DRAWN_IN:
+        values = program.values(share * x)
+        if np.all(values.budgets < 1.0) and np.all(values.local < 1.0):
+            return share * x
+    return DRAWN_IN[-1] * x

@@ -1,0 +1,294 @@
+"""From a profile to the program of a free motion: references, budgets, bounds, ends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from des_cli.kinematics.chain import Chain, chain_of
+from des_cli.kinematics.seat_turn import SeatTurn, seat_turns
+from des_cli.kinematics.trig_polynomial import TrigPolynomial
+from des_cli.kinematics.twist import SeatForms, SeatMotion, seat_forms
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import JOINTS, JointLimits, Machine, OccupantBounds, Seat
+from des_cli.model.metric import Budget
+from des_cli.model.motion import Motion
+from des_cli.model.profile import Ends as EndsName
+from des_cli.model.profile import Profile, Reduction
+from des_cli.reduction.limit_rows import LimitRows, Tie
+from des_cli.reduction.local_bounds import (
+    AttitudeBound,
+    ComponentBound,
+    LocalBound,
+    NormBound,
+    OnsetBound,
+)
+from des_cli.reduction.motion_program import SEAT_VARIABLES, FreeSeat, JointBudget, MotionProblem
+from des_cli.reduction.reference import sample_motion
+from des_cli.reduction.terms import Term, value_of
+from des_cli.reduction.windows import JOINTS as COMPONENTS
+from des_cli.reduction.windows import Windows
+from des_cli.solver.spline import Ends, SplineGrid
+from des_cli.units import STANDARD_GRAVITY_M_S2
+
+BLEND = 0.1
+"""Weight of the felt error in the objective ``blend``, relative to the cross-coupling."""
+
+REGULARISATION = 1e-6
+"""Weight on the mean square of the deviation's jerk, in units of the acceleration limits
+per second, beside a cost that is one for the desired motion: it determines what neither
+cost nor budgets do."""
+
+SEAT_WEIGHT = 1e-6
+"""Weight on the squared change of the seat's angles [1/rad^2], for the same reason."""
+
+MARGIN = 1e-6
+"""Relative distance that the solver keeps from a machine limit: room for the rounding of
+whoever differentiates a table of positions twice."""
+
+UNIT_ACCELERATION = 1.0
+"""Acceleration [rad/s^2] that the regularisation takes for a joint without a limit."""
+
+PILOT_SIGNS = np.array([1.0, 1.0, -1.0])
+"""From the specific force along x, y, z of the seat to Gx, Gy, Gz."""
+
+SEAT_ANGLES = ("seat_yaw", "seat_pitch")
+
+
+def unlimited() -> tuple[JointLimits, ...]:
+    """Return limits that are none."""
+    return tuple(JointLimits(np.inf, np.inf, np.inf) for _ in JOINTS)
+
+
+@dataclass(frozen=True)
+class FreeTask:
+    """A free motion to find: what is asked, and what it may cost.
+
+    Parameters
+    ----------
+    machine : Machine
+    seat : Seat
+    reduction : Reduction
+    reference : Motion
+        What fidelity is measured against.
+    limits : tuple of JointLimits
+        That hold for the motion.
+    """
+
+    machine: Machine
+    seat: Seat
+    reduction: Reduction
+    reference: Motion
+    limits: tuple[JointLimits, ...]
+
+    @classmethod
+    def of(cls, profile: Profile, reference: Motion) -> FreeTask:
+        """Take what a profile asks for."""
+        enforced = profile.reduction.limits == "enforce"
+        limits = profile.machine.limits if enforced else unlimited()
+        return cls(profile.machine, profile.seat, profile.reduction, reference, limits)
+
+    @property
+    def chain(self) -> Chain:
+        """The chain with the seat as the profile fixes it."""
+        return chain_of(self.machine, self.seat)
+
+    @property
+    def occupant(self) -> OccupantBounds:
+        """The bounds on what is felt, where limits are enforced."""
+        enforced = self.reduction.limits == "enforce"
+        return self.machine.occupant if enforced else OccupantBounds()
+
+    @property
+    def ends(self) -> Ends:
+        """What deviations from a motion that starts as the reference does keep."""
+        name: EndsName = self.reduction.ends
+        held = np.array([joint in self.reduction.hold for joint in JOINTS])
+        freed = np.array([f"{joint}_start" in self.reduction.optimise for joint in JOINTS])
+        both = np.full(len(JOINTS), name == "match-both")
+        return Ends(
+            start_value=~freed,
+            start_rate=np.full(len(JOINTS), name != "free"),
+            end_value=both,
+            end_rate=both | (name == "match-rates"),
+            held=held,
+        )
+
+    @property
+    def base_ends(self) -> Ends:
+        """What the executable motion keeps of the reference: the start, and the same ends."""
+        yes = np.ones(len(JOINTS), dtype=bool)
+        return replace(self.ends, start_value=yes, held=~yes)
+
+
+def pose_motion(
+    task: FreeTask, grid: SplineGrid, base: Floats, ties: Sequence[Tie] = ()
+) -> MotionProblem:
+    """Make the program's problem on a grid round an executable base.
+
+    Parameters
+    ----------
+    task : FreeTask
+    grid : SplineGrid
+    base : (n, 3) array
+        Control points [rad].
+    ties : sequence of Tie
+    """
+    reduction = task.reduction
+    forms = seat_forms(task.chain, task.machine.gravity)
+    windows = Windows(grid, SEAT_VARIABLES)
+    angle, rate, acceleration = sample_motion(task.reference, windows.times())
+    seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
+    measures = _Measures(grid, base, angle, seat)
+    acceleration_limit = np.array([limit.acceleration for limit in task.machine.limits])
+    unit = np.where(np.isfinite(acceleration_limit), acceleration_limit, UNIT_ACCELERATION)
+    attitude = [b for b in reduction.budget if b.metric == "attitude_error_max_deg"]
+    return MotionProblem(
+        grid=grid,
+        base=base,
+        forms=forms,
+        cost=measures.cost(reduction),
+        budgets=[measures.budget(b) for b in reduction.budget if b not in attitude],
+        rows=LimitRows(grid, base, task.limits, task.ends, MARGIN, ties),
+        ends=task.ends,
+        smoothing=REGULARISATION / (grid.duration * unit**2),
+        local=[
+            *(_attitude_bound(task.chain, angle, budget.most) for budget in attitude),
+            *_occupant_bounds(task.occupant, grid),
+        ],
+        seat=_free_seat(task),
+    )
+
+
+def cross_coupling(task: FreeTask, grid: SplineGrid) -> float:
+    """Return the reference's ``int c' R1 c dt``, which the cost is relative to."""
+    forms = seat_forms(task.chain, task.machine.gravity)
+    times = Windows(grid, SEAT_VARIABLES).times()
+    angle, rate, acceleration = sample_motion(task.reference, times)
+    seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
+    root = _root(task.reduction.r1)
+    return float(0.5 * grid.step * np.sum((root @ seat.products[:3]) ** 2))
+
+
+class _Measures:
+    """Costs and budgets on a grid, relative to the reference's own size."""
+
+    def __init__(self, grid: SplineGrid, base: Floats, angle: Floats, seat: SeatMotion) -> None:
+        self.grid, self.base, self.angle, self.seat = grid, base, angle, seat
+        self.weight = 0.5 * grid.step
+
+    def cost(self, reduction: Reduction) -> list[Term]:
+        """Return the terms of the objective; the reference's cross-coupling counts one."""
+        root = _root(reduction.r1)
+        cross = value_of(self.seat, "cross")
+        size = max(self.weight * float(np.sum((root @ cross) ** 2)), 1e-300)
+        terms = []
+        if reduction.objective != "felt":
+            terms.append(Term("cross", root * np.sqrt(self.weight / size)))
+        if reduction.objective != "coriolis":
+            share = BLEND if reduction.objective == "blend" else 1.0
+            isotropic = np.sqrt(share * np.trace(reduction.r1) / 3.0 * self.weight / size)
+            target = value_of(self.seat, "acceleration") - cross
+            terms.append(Term("acceleration", isotropic * np.eye(3), target))
+        return terms
+
+    def budget(self, budget: Budget) -> Term | JointBudget:
+        """Return a budget as the square of its metric over the square of its most."""
+        most, weight = budget.most, self.weight
+        mean = weight / self.grid.duration
+        match budget.metric:
+            case "joint_deviation_relative":
+                return self._joints(most)
+            case "joint_deviation_relative_squared":
+                return self._joints(float(np.sqrt(most)))
+            case "seat_rate_deviation_relative":
+                return self._term("rate", self._per_size("rate") / most)
+            case "seat_g_deviation_relative":
+                return self._term("force", self._per_size("force") / most)
+            case "seat_g_rms_error_g":
+                return self._term("force", np.sqrt(mean) / (most * STANDARD_GRAVITY_M_S2))
+            case "seat_angular_acceleration_deviation_relative":
+                return self._term("acceleration", self._per_size("acceleration") / most)
+            case "seat_angular_acceleration_rms_error_rad_s2":
+                return self._term("acceleration", np.sqrt(mean) / most)
+        raise ValueError(f"a free motion has no budget on {budget.metric}")
+
+    def _per_size(self, quantity: str) -> float:
+        """Return one over the norm of a quantity of the reference."""
+        value = value_of(self.seat, quantity)  # type: ignore[arg-type]
+        return 1.0 / max(float(np.linalg.norm(value)), 1e-150)
+
+    def _term(self, quantity: str, scale: float) -> Term:
+        value = value_of(self.seat, quantity)  # type: ignore[arg-type]
+        return Term(quantity, scale * np.eye(3), value)  # type: ignore[arg-type]
+
+    def _joints(self, most: float) -> JointBudget:
+        windows = Windows(self.grid, tuple((0, joint) for joint in range(COMPONENTS)))
+        base = [windows.gather(self.base, *span) for span in windows.chunks()]
+        size = max(float(np.sum(self.angle**2)), 1e-300)
+        return JointBudget(1.0 / (most**2 * size), np.concatenate(base, axis=1) - self.angle.T)
+
+
+def _root(weight: Floats) -> Floats:
+    """Return a symmetric square root of a positive semidefinite matrix, diagonal if it is."""
+    if np.array_equal(weight, np.diag(np.diag(weight))):
+        return np.diag(np.sqrt(np.diag(weight)))
+    values, vectors = np.linalg.eigh(weight)
+    return np.asarray((vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
+
+
+def _attitude_bound(chain: Chain, angle: Floats, most_deg: float) -> AttitudeBound:
+    coefficient = chain.transform.coefficient[..., :3, :3]
+    rotation = TrigPolynomial(coefficient.reshape(3, 3, 3, 9))
+    return AttitudeBound(rotation, rotation(angle).T, float(np.radians(most_deg)))
+
+
+def _occupant_bounds(occupant: OccupantBounds, grid: SplineGrid) -> list[LocalBound]:
+    """Return the machine's bounds on what is felt."""
+    found: list[LocalBound] = []
+    directions, bounds = [], []
+    per_g = np.diag(PILOT_SIGNS) / STANDARD_GRAVITY_M_S2
+    for axis, (least, most) in enumerate((occupant.gx, occupant.gy, occupant.gz)):
+        for bound, sign in ((most, 1.0), (-least, -1.0)):
+            if np.isfinite(bound):
+                directions.append(sign * per_g[axis])
+                bounds.append(bound)
+    if bounds:
+        scale = np.maximum(np.abs(bounds), 1.0)
+        found.append(ComponentBound(np.array(directions), np.array(bounds), scale))
+    if np.isfinite(occupant.angular_acceleration):
+        found.append(NormBound("acceleration", occupant.angular_acceleration))
+    if np.isfinite(occupant.g_onset):
+        apart = grid.step / np.sqrt(3.0)  # between the two points of an interval
+        rate = per_g / (occupant.g_onset * apart)
+        found.append(OnsetBound(np.concatenate([rate, -rate])))
+    return found
+
+
+def _free_seat(task: FreeTask) -> FreeSeat | None:
+    names = [name for name in SEAT_ANGLES if name in task.reduction.optimise]
+    present = seat_turns(task.machine, task.seat)
+    names = [name for name in present if name in names]
+    if not names:
+        return None
+
+    def at(change: Floats) -> tuple[SeatForms, list[SeatTurn]]:
+        seat = turned_seat(task, change)
+        forms = seat_forms(chain_of(task.machine, seat), task.machine.gravity)
+        turns = seat_turns(task.machine, seat)
+        return forms, [turns[name] for name in names]
+
+    return FreeSeat(len(names), at, SEAT_WEIGHT)
+
+
+def turned_seat(task: FreeTask, change: Floats) -> Seat:
+    """Return the seat with its free angles changed [rad], in the chain's order."""
+    present = seat_turns(task.machine, task.seat)
+    names = [name for name in present if name in task.reduction.optimise]
+    by_name = dict(zip(names, change.tolist(), strict=True))
+    return Seat(
+        yaw=task.seat.yaw + by_name.get("seat_yaw", 0.0),
+        pitch=task.seat.pitch + by_name.get("seat_pitch", 0.0),
+    )

@@ -1,0 +1,1 @@
+"""Numerical methods that know no centrifuge: splines, banded systems, interior points."""

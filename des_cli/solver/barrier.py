@@ -1,0 +1,483 @@
+"""A feasible primal-dual interior point for few integral budgets and many local limits.
+
+Minimise a cost over x, subject to
+
+    |v_i(x)| <= b_i     linear, local, many          (limits)
+    h_k(x)  <= 1        nonlinear, local, many       (bounds at points)
+    g_j(x)  <= 1        nonlinear, integral, few     (budgets)
+
+It starts strictly inside and stays there: every iterate is a point that may be used.
+Local inequalities add to the banded Hessian without widening it. A budget couples
+everything with everything, but only through its gradient: its barrier is a row that
+borders the band, taken in by the Sherman-Morrison-Woodbury formula round the one
+factorisation. So several budgets cost hardly more than none.
+
+The method is the primal-dual barrier method of Fiacco and McCormick with Newton steps
+(Nocedal and Wright, Numerical Optimization, chapter 19), and these particulars:
+
+- A budget's barrier has the weight of many rows (``BUDGET_WEIGHT``). One row among ten
+  thousand would let the budget collapse first, and the path would follow its boundary.
+- A budget's boundary is curved. Where a full step would leave it, the step is bent back
+  along H^-1 grad g, until g meets its linear prediction (second-order correction).
+- The Hessian is exact where that is positive definite; else its curvature part, which
+  alone can be indefinite, counts by a share that is halved until it is.
+- The fraction to the boundary does not follow the barrier, and a multiplier stays within
+  a factor of barrier over slack, so that no single slack collapses early.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, Protocol, TypeAlias
+
+import numpy as np
+
+from des_cli.model.arrays import Floats
+
+BoundaryStatus: TypeAlias = Literal["converged", "iteration-limit", "stalled"]
+
+BUDGET_WEIGHT = 0.1
+"""Weight of a budget's barrier, in rows per row of the local inequalities."""
+
+FRACTION = 0.995
+"""Of the way to the nearest boundary that a step may take."""
+
+SPREAD = 1e2
+"""A multiplier stays within this factor of barrier over slack."""
+
+ARMIJO = 1e-4
+"""Share of the predicted decrease that a step must bring."""
+
+LEAST_BUDGET_SLACK = 1e-3
+"""Share of a nonlinear slack that a step must leave."""
+
+OVERSHOOT = 0.1
+"""A budget that misses its linear prediction by this share of its slack is corrected."""
+
+SHORTEST_CORRECTED = 0.05
+"""Shortest first step that is worth a second-order correction."""
+
+CONTRACTION, SUPERLINEAR = 0.2, 1.5
+"""The barrier falls to this share, or to this power of the gap, once its problem is solved
+to within ``CENTRED`` times the gap."""
+
+CENTRED = 10.0
+
+HALVINGS = 25
+"""Of a step, before the search gives up."""
+
+SHARE_HALVINGS = 5
+"""Of the share of the curvature, before it is left out altogether."""
+
+SHIFTS = (1e-12, 1e-10, 1e-8, 1e-6)
+"""Relative shifts of the diagonal, tried where even the convex part is singular to rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """A program's functions at a point: cost, budgets (j,), local bounds (k,)."""
+
+    cost: float
+    budgets: Floats
+    local: Floats
+
+
+class Expansion(Protocol):
+    """A program's functions at a point, with first derivatives, and a Hessian inside.
+
+    Vectors are those of the full space, (N,).
+    """
+
+    cost: float
+    budgets: Floats
+    local: Floats
+    gradient: Floats
+    budget_gradients: Floats  # (N, j)
+
+    def local_change(self, step: Floats) -> Floats:
+        """Return the derivative of the local bounds along a step, (k,)."""
+
+    def local_adjoint(self, multiplier: Floats) -> Floats:
+        """Return the transposed derivative times multipliers, (N,)."""
+
+
+class System(Protocol):
+    """A factorised positive definite system."""
+
+    def solve(self, right: Floats) -> Floats:
+        """Solve for columns of the full space, (N, r): reduce, solve, expand again."""
+
+
+class Program(Protocol):
+    """What the method needs to know of a problem."""
+
+    bounds: Floats  # (m,)
+
+    def linear(self, x: Floats) -> Floats:
+        """Return the linear rows' values, (m,)."""
+
+    def linear_change(self, step: Floats) -> Floats:
+        """Return what a step changes of them."""
+
+    def linear_adjoint(self, multiplier: Floats) -> Floats:
+        """Return the transposed rows times multipliers, (N,)."""
+
+    def values(self, x: Floats) -> Values:
+        """Evaluate the functions."""
+
+    def expand(
+        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
+    ) -> Expansion:
+        """Evaluate with derivatives.
+
+        Parameters
+        ----------
+        x : (N,) array
+        budget, local : (j,), (k,) array
+            Multipliers, for the Hessian of the Lagrangian.
+        stiffness : (k,) array
+            Weights of ``grad h grad h'`` that the barrier adds.
+        share : float
+            Of the curvature part of the Hessian, 0 to 1.
+        """
+
+    def system(self, expansion: Expansion, stiffness: Floats, shift: float) -> System | None:
+        """Factorise the Hessian and ``rows' diag(stiffness) rows``; None if not convex."""
+
+    def reduce(self, gradient: Floats) -> Floats:
+        """Return a gradient by the free unknowns, zero where nothing moves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How far to go.
+
+    Parameters
+    ----------
+    gap : float
+        Complementarity at the end, in the unit of the cost.
+    tolerance : float
+        On the first-order conditions, relative to the gradients at the start.
+    start_gap : float
+        Complementarity that the first barrier aims at.
+    max_iterations : int
+    stop_early : callable, optional
+        Told the budgets' values at each iterate; ends the method where it returns True.
+    """
+
+    gap: float = 1e-8
+    tolerance: float = 1e-7
+    start_gap: float = 1.0
+    max_iterations: int = 200
+    stop_early: Callable[[Floats], bool] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One line of the method's log."""
+
+    number: int
+    cost: float
+    gap: float
+    optimality: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Where the method ended.
+
+    Parameters
+    ----------
+    status : {"converged", "iteration-limit", "stalled"}
+        Of a stalled search the point is as usable as any other, and not optimal.
+    x : (N,) array
+    values : Values
+    budget_multiplier : (j,) array
+        What a unit of each budget is worth.
+    gap, optimality : float
+    steps : tuple of Step
+    """
+
+    status: BoundaryStatus
+    x: Floats
+    values: Values
+    budget_multiplier: Floats
+    gap: float
+    optimality: float
+    steps: tuple[Step, ...]
+
+
+def minimise(
+    program: Program,
+    start: Floats,
+    options: Options | None = None,
+    on_step: Callable[[Step], None] | None = None,
+) -> Outcome:
+    """Minimise from a point strictly inside.
+
+    Parameters
+    ----------
+    program : Program
+    start : (N,) array
+    options : Options, optional
+    on_step : callable, optional
+        Called with each line of the log.
+
+    Raises
+    ------
+    ValueError
+        If the start is not strictly inside.
+    """
+    return _Search(program, start, options or Options(), on_step).run()
+
+
+class _Search:
+    """The state of a minimisation."""
+
+    def __init__(
+        self,
+        program: Program,
+        start: Floats,
+        options: Options,
+        on_step: Callable[[Step], None] | None,
+    ) -> None:
+        self.program, self.options, self.on_step = program, options, on_step
+        self.x = np.array(start, dtype=np.float64)
+        self.at = program.values(self.x)
+        rows = program.linear(self.x)
+        self.m = len(rows)
+        self.slack = np.concatenate(
+            [program.bounds - rows, program.bounds + rows, 1.0 - self.at.local]
+        )
+        self.budget_slack = 1.0 - self.at.budgets
+        if np.min(self.slack, initial=1.0) <= 0.0 or np.min(self.budget_slack, initial=1.0) <= 0.0:
+            raise ValueError("the start is not strictly inside")
+        count = len(self.slack)
+        self.weight = max(1.0, BUDGET_WEIGHT * count)
+        self.total = count + self.weight * len(self.budget_slack)
+        self.mu = options.start_gap / max(self.total, 1.0)
+        self.dual = self.mu / self.slack
+        self.budget_dual = self.mu * self.weight / self.budget_slack
+        self.share = 1.0
+        self.unit = 0.0
+        self.steps: list[Step] = []
+        self.length = 0.0
+
+    def run(self) -> Outcome:
+        options = self.options
+        status: BoundaryStatus = "iteration-limit"
+        for number in range(options.max_iterations + 1):
+            expansion, system = self._linearise()
+            residual = self._residual(expansion)
+            gap = float(self.slack @ self.dual + self.budget_slack @ self.budget_dual)
+            line = Step(number, expansion.cost, gap, residual, self.length)
+            self.steps.append(line)
+            if self.on_step is not None:
+                self.on_step(line)
+            if gap <= 1.0001 * options.gap and residual <= options.tolerance:
+                status = "converged"
+                break
+            if options.stop_early is not None and options.stop_early(self.at.budgets):
+                status = "converged"
+                break
+            if number == options.max_iterations:
+                break
+            if system is None:
+                status = "stalled"
+                break
+            self._lower_barrier(residual)
+            if not self._advance(expansion, system):
+                status = "stalled"
+                break
+        last = self.steps[-1]
+        return Outcome(
+            status=status,
+            x=self.x,
+            values=self.at,
+            budget_multiplier=self.budget_dual,
+            gap=last.gap,
+            optimality=last.optimality,
+            steps=tuple(self.steps),
+        )
+
+    def _linearise(self) -> tuple[Expansion, System | None]:
+        """Expand at the iterate and factorise with the largest share that is convex."""
+        m = self.m
+        stiffness = self.dual / self.slack
+        of_rows = stiffness[:m] + stiffness[m : 2 * m]
+        share = self.share
+        halvings = 0
+        while True:
+            expansion = self.program.expand(
+                self.x, self.budget_dual, self.dual[2 * m :], stiffness[2 * m :], share
+            )
+            system = self.program.system(expansion, of_rows, 0.0)
+            if system is not None or share == 0.0:
+                break
+            halvings += 1
+            share = 0.0 if halvings >= SHARE_HALVINGS else 0.5 * share
+        for shift in SHIFTS:
+            if system is not None:
+                break
+            system = self.program.system(expansion, of_rows, shift)
+        self.share = min(1.0, 2.0 * share) if share > 0.0 else 0.5**SHARE_HALVINGS
+        return expansion, system
+
+    def _residual(self, expansion: Expansion) -> float:
+        """Return the scaled violation of the first-order conditions."""
+        program, m = self.program, self.m
+        of_cost = program.reduce(expansion.gradient)
+        if not self.unit:
+            sizes = [np.max(np.abs(of_cost), initial=0.0)]
+            sizes += [
+                np.max(np.abs(program.reduce(column)), initial=0.0)
+                for column in expansion.budget_gradients.T
+            ]
+            self.unit = max(float(max(sizes)), 1e-300)
+        force = expansion.gradient + expansion.budget_gradients @ self.budget_dual
+        force = force + program.linear_adjoint(self.dual[:m] - self.dual[m : 2 * m])
+        force = force + expansion.local_adjoint(self.dual[2 * m :])
+        return float(np.max(np.abs(program.reduce(force)), initial=0.0)) / self.unit
+
+    def _lower_barrier(self, residual: float) -> None:
+        """Lower the barrier as far as its problem counts as solved."""
+        total, least = self.total, 0.5 * self.options.gap / max(self.total, 1.0)
+        off = float(np.max(np.abs(self.slack * self.dual - self.mu), initial=0.0)) * total
+        error = max(residual, off)
+        while error < CENTRED * self.mu * total and self.mu > least:
+            gap = self.mu * total
+            self.mu = max(min(CONTRACTION * gap, gap**SUPERLINEAR) / total, least)
+
+    def _force(self, expansion: Expansion) -> Floats:
+        """Return the gradient of the barrier problem, (N,)."""
+        m, inverse = self.m, self.mu / self.slack
+        force = expansion.gradient + self.program.linear_adjoint(inverse[:m] - inverse[m : 2 * m])
+        force = force + expansion.local_adjoint(inverse[2 * m :])
+        return np.asarray(
+            force + expansion.budget_gradients @ (self.mu * self.weight / self.budget_slack)
+        )
+
+    def _advance(self, expansion: Expansion, system: System) -> bool:
+        """Take one step; return whether one was found."""
+        border = _Border(system, expansion.budget_gradients, self.budget_slack / self.budget_dual)
+        force = self._force(expansion)
+        step = border.solve(-force)
+        slope = float(force @ step)
+        if not slope < 0.0:
+            return False
+        change = self._slack_change(expansion, step)
+        budget_change = -(step @ expansion.budget_gradients)
+        dual_step = self.mu / self.slack - self.dual - self.dual / self.slack * change
+        budget_dual_step = (
+            self.mu * self.weight / self.budget_slack
+            - self.budget_dual
+            - self.budget_dual / self.budget_slack * budget_change
+        )
+        longest = _longest(self.slack, change)
+        dual_length = min(
+            _longest(self.dual, dual_step), _longest(self.budget_dual, budget_dual_step)
+        )
+        if not self._search(border, step, slope, budget_change, longest):
+            return False
+        m = self.m
+        self.dual = self.dual + dual_length * dual_step
+        self.budget_dual = self.budget_dual + dual_length * budget_dual_step
+        central = self.mu / self.slack
+        self.dual = np.clip(self.dual, central / SPREAD, central * SPREAD)
+        central = self.mu * self.weight / self.budget_slack
+        self.budget_dual = np.clip(self.budget_dual, central / SPREAD, central * SPREAD)
+        assert m == self.m
+        return True
+
+    def _slack_change(self, expansion: Expansion, step: Floats) -> Floats:
+        rows = self.program.linear_change(step)
+        return np.concatenate([-rows, rows, -expansion.local_change(step)])
+
+    def _merit(self, cost: float, slack: Floats, budget_slack: Floats) -> float:
+        """Return the barrier problem's cost."""
+        barrier = float(np.sum(np.log(slack)) + self.weight * np.sum(np.log(budget_slack)))
+        return cost - self.mu * barrier
+
+    def _search(
+        self,
+        border: _Border,
+        step: Floats,
+        slope: float,
+        budget_change: Floats,
+        longest: float,
+    ) -> bool:
+        """Search along a step, bent back where it would overrun a budget."""
+        program, m = self.program, self.m
+        merit = self._merit(self.at.cost, self.slack, self.budget_slack)
+        noise = 1e-13 * abs(merit) + 1e-14
+        length, bend = longest, None
+        for trial in range(HALVINGS):
+            move = length * step if bend is None else length * step + length**2 * bend
+            at = program.values(self.x + move)
+            if trial == 0 and length > SHORTEST_CORRECTED:
+                missed = np.maximum(at.budgets - (self.at.budgets - length * budget_change), 0.0)
+                if np.any(missed > OVERSHOOT * self.budget_slack):
+                    bend = border.correction(missed) / length**2
+                    move = length * step + length**2 * bend
+                    at = program.values(self.x + move)
+            budget_slack = 1.0 - at.budgets
+            rows = program.linear_change(move)
+            slack = np.concatenate(
+                [self.slack[:m] - rows, self.slack[m : 2 * m] + rows, 1.0 - at.local]
+            )
+            inside = (
+                bool(np.all(budget_slack > LEAST_BUDGET_SLACK * self.budget_slack))
+                and bool(np.all(slack[: 2 * m] > 0.0))
+                and bool(np.all(slack[2 * m :] > LEAST_BUDGET_SLACK * self.slack[2 * m :]))
+            )
+            if inside:
+                reached = self._merit(at.cost, slack, budget_slack)
+                if reached <= merit + ARMIJO * length * slope + noise:
+                    self.x = self.x + move
+                    self.at, self.slack, self.budget_slack = at, slack, budget_slack
+                    self.length = length
+                    return True
+            length *= 0.5
+            if trial == 1:
+                bend = None  # a shorter step follows the boundary by itself
+        return False
+
+
+class _Border:
+    """A banded system with a few rank-one terms, by Sherman, Morrison and Woodbury.
+
+    Parameters
+    ----------
+    system : System
+    gradients : (N, j) array
+    compliance : (j,) array
+        The inverse weights of the rank-one terms.
+    """
+
+    def __init__(self, system: System, gradients: Floats, compliance: Floats) -> None:
+        self._system, self._gradients = system, gradients
+        if gradients.shape[1]:
+            self._answers = system.solve(gradients)
+            self._between = gradients.T @ self._answers
+            self._small = np.linalg.inv(np.diag(compliance) + self._between)
+
+    def solve(self, right: Floats) -> Floats:
+        """Solve for one right-hand side, (N,)."""
+        plain = self._system.solve(right[:, None])[:, 0]
+        if not self._gradients.shape[1]:
+            return plain
+        return np.asarray(plain - self._answers @ (self._small @ (self._gradients.T @ plain)))
+
+    def correction(self, missed: Floats) -> Floats:
+        """Return the shortest move, in the Hessian's norm, that lowers the budgets by so much."""
+        size = np.trace(self._between) + 1e-300
+        shifted = self._between + 1e-12 * size * np.eye(len(missed))
+        return np.asarray(-self._answers @ np.linalg.solve(shifted, missed))
+
+
+def _longest(values: Floats, change: Floats) -> float:
+    """Return the longest step, at most 1, that keeps positive values positive."""
+    worst = float(np.min(change / values, initial=0.0))
+    return min(1.0, FRACTION / -worst) if worst < 0.0 else 1.0
