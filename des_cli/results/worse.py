@@ -15,8 +15,8 @@ from des_cli.model.machine import JOINTS
 from des_cli.results.reading import lookup, number
 
 SHARE = 0.05
-"""Relative growth of the total angular acceleration, rms or peak, that is told: a twentieth
-is what two runs of one maneuver differ by on a machine."""
+"""Relative growth of the total angular acceleration, rms or peak, or of the G onset that is
+told: a twentieth is what two runs of one maneuver may differ by on a machine."""
 
 LEAST_ANGULAR_ACCELERATION = 0.01
 """Growth of it [rad/s^2] that is never told: about half a degree per second squared, at
@@ -74,10 +74,22 @@ def find_worse(metrics: Mapping[str, Any]) -> list[Worse]:
     return [*_angular(metrics), *_sideways(metrics), *_onset(metrics), *_start(metrics)]
 
 
-def worse_words(metrics: Mapping[str, Any]) -> str:
-    """Return what got worse in one line, empty where nothing did."""
-    found = ", ".join(map(str, find_worse(metrics)))
-    return f"worse to sit in: {found}" if found else ""
+def worse_words(metrics: Mapping[str, Any], *, short: bool = False) -> str:
+    """Return what got worse in one line, empty where nothing did.
+
+    Parameters
+    ----------
+    metrics : mapping
+    short : bool
+        Give the first measure alone, for a line among many.
+    """
+    found = find_worse(metrics)
+    told = ", ".join(map(str, found[:1] if short else found))
+    return f"worse to sit in: {told}" if told else ""
+
+
+def _grew(before: float, after: float, least: float) -> bool:
+    return after - before > max(SHARE * before, least)
 
 
 def _angular(metrics: Mapping[str, Any]) -> list[Worse]:
@@ -87,8 +99,9 @@ def _angular(metrics: Mapping[str, Any]) -> list[Worse]:
         after = number(metrics, f"{_TOTAL}.{kind}_after_rad_s2")
         if before is None or after is None:
             continue
-        if after - before > max(SHARE * before, LEAST_ANGULAR_ACCELERATION):
-            found.append(f"{before:.3g} -> {after:.3g} rad/s² {kind}")
+        if _grew(before, after, LEAST_ANGULAR_ACCELERATION):
+            numbers = f"{before:.3g} -> {after:.3g} rad/s²"
+            found.append(f"{numbers} rms" if kind == "rms" else f"peak {numbers}")
     return [Worse("total angular acceleration", ", ".join(found))] if found else []
 
 
@@ -106,7 +119,7 @@ def _onset(metrics: Mapping[str, Any]) -> list[Worse]:
     for axis in ("gx", "gy", "gz"):
         before = number(metrics, f"felt.seat_g.{axis}.onset_before_g_s")
         after = number(metrics, f"felt.seat_g.{axis}.onset_after_g_s")
-        if before is not None and after is not None and after - before > LEAST_ONSET:
+        if before is not None and after is not None and _grew(before, after, LEAST_ONSET):
             grown.append((after - before, axis, before, after))
     if not grown:
         return []
