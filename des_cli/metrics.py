@@ -9,26 +9,28 @@ import numpy as np
 
 from des_cli.kinematics.attitude import geodesic_angle
 from des_cli.kinematics.chain import chain_of, seat_rotation
+from des_cli.kinematics.response import respond
 from des_cli.model.arrays import Floats
-from des_cli.model.machine import JOINTS, Machine
+from des_cli.model.coriolis import COMPONENTS, Component
+from des_cli.model.machine import JOINTS
 from des_cli.model.motion import DesiredMotion, Motion, integrate_sides
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
 from des_cli.model.run import Violation
 from des_cli.model.solution import Solution
 from des_cli.reduction.baseline import Baselines, joint_deviation
-from des_cli.reduction.limits import measure_peaks
-
-AT_LIMIT = 0.99
-"""Share of the acceleration limit from which a joint counts as being at it."""
-
-COMPONENTS = ("ab3", "bb3", "cb3", "vector", "seat_x", "seat_y", "seat_z")
-"""Names of the measured parts of the Coriolis vector, in the order of the report."""
+from des_cli.results.felt import felt_metrics, relative_error, rms, rms_error, tilt_error
+from des_cli.results.joints import joint_metrics
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Everything that the metrics are taken of."""
+    """Everything that the metrics are taken of.
+
+    ``before`` and ``after`` are the responses of the motion that the profile asks
+    for, the record, and of the modified one; ``desired`` is the executable motion
+    that the solver started from.
+    """
 
     profile: Profile
     asked: DesiredMotion
@@ -45,9 +47,10 @@ def measure(run: Measured) -> dict[str, Any]:
     return {
         "profile": _profile(run.profile),
         "solver": _solver(run.profile, run.solution),
-        "coriolis": coriolis_metrics(run.desired.step, run.before, run.after)
+        "coriolis": coriolis_metrics(run.asked.motion.step, run.before, run.after)
         | {"objective": {"reduction": run.baselines.reduction}},
         "fidelity": fidelity_metrics(run),
+        "felt": felt_metrics(run.asked.motion, run.before, run.after),
         "executable": _executable(run),
         "baseline": {
             "report_sweep": {
@@ -60,7 +63,7 @@ def measure(run: Measured) -> dict[str, Any]:
             },
         },
         "limits": {
-            which: _limits(run.profile.machine, motion, which, run.violations)
+            which: joint_metrics(run.profile.machine, motion, which, run.violations)
             for which, motion in (
                 ("desired", run.asked.motion),
                 ("modified", run.solution.modified),
@@ -93,6 +96,9 @@ def _solver(profile: Profile, solution: Solution) -> dict[str, Any]:
         "r2": reduction.r2.tolist(),
         "tracking": reduction.tracking.tolist(),
         "limits": reduction.limits,
+        "ends": reduction.ends,
+        "objective": reduction.objective,
+        "optimise": list(reduction.optimise),
         "budget": {b.metric: b.most for b in reduction.budget} or None,
         "status": solution.status,
         "converged": solution.converged,
@@ -116,28 +122,29 @@ def coriolis_metrics(step: Floats, before: Response, after: Response) -> dict[st
     Returns
     -------
     dict
-        Keys as in ``COMPONENTS``; reduction is 1 - int after^2 / int before^2,
+        By the keys of ``COMPONENTS``; reduction is 1 - int after^2 / int before^2,
         and None where there was nothing to reduce.
     """
-    found = {}
-    for name, old, new in zip(COMPONENTS, _parts(before), _parts(after), strict=True):
-        energy_old, energy_new = integrate_sides(step, old**2), integrate_sides(step, new**2)
-        duration = float(step.sum())
-        found[name] = {
-            "reduction": relative_reduction(float(energy_old), float(energy_new)),
-            "rms_before_rad_s2": float(np.sqrt(energy_old / duration)),
-            "rms_after_rad_s2": float(np.sqrt(energy_new / duration)),
+    found: dict[str, Any] = {}
+    for component in COMPONENTS:
+        old, new = _part(before, component), _part(after, component)
+        energies = (float(integrate_sides(step, side**2)) for side in (old, new))
+        found[component.key] = {
+            "reduction": relative_reduction(*energies),
+            "rms_before_rad_s2": rms(step, old),
+            "rms_after_rad_s2": rms(step, new),
             "peak_before_rad_s2": float(np.max(np.abs(old))),
             "peak_after_rad_s2": float(np.max(np.abs(new))),
         }
     return found
 
 
-def _parts(response: Response) -> tuple[Floats, ...]:
-    """Return AB3, BB3, CB3, the vector's magnitude, and seat x, y, z, (n - 1, 2) each."""
-    report, seat = response.coriolis_report, response.coriolis_seat
-    magnitude = np.linalg.norm(seat, axis=-1)
-    return (*np.moveaxis(report, -1, 0), magnitude, *np.moveaxis(seat, -1, 0))
+def _part(response: Response, component: Component) -> Floats:
+    """Return one part of the Coriolis vector, (n - 1, 2) [rad/s^2]."""
+    if component.axes is None:
+        return np.asarray(np.linalg.norm(response.coriolis_seat, axis=-1))
+    report = component.axes == "report"
+    return (response.coriolis_report if report else response.coriolis_seat)[..., component.index]
 
 
 def relative_reduction(before: float, after: float) -> float | None:
@@ -146,100 +153,67 @@ def relative_reduction(before: float, after: float) -> float | None:
 
 
 def fidelity_metrics(run: Measured) -> dict[str, Any]:
-    """Return what the reduction cost: in the joints, and as the pilot feels it."""
-    wanted, made = run.desired, run.solution.modified
-    step = wanted.step
-    off = made.angle_sides - wanted.angle_sides
-    deviation = joint_deviation(wanted, made)
-    rms = np.sqrt(integrate_sides(step, off**2) / step.sum())
-    felt = run.after.seat_g - run.before.seat_g
-    felt_energy = float(integrate_sides(step, np.sum(felt**2, axis=-1)))
+    """Return what the reduction cost: in the joints, and as the pilot feels it.
+
+    Everything is measured against the record: the motion that the profile asks for.
+    """
+    record, modified = run.asked.motion, run.solution.modified
+    before, after, step = run.before, run.after, record.step
+    deviation = joint_deviation(record, modified)
+    square = integrate_sides(step, (modified.angle_sides - record.angle_sides) ** 2)
     chain = chain_of(run.profile.machine, run.profile.seat)
-    turned = geodesic_angle(seat_rotation(chain, wanted.angle), seat_rotation(chain, made.angle))
-    idle = (1.0 - np.stack([run.solution.control[:-1], run.solution.control[1:]], axis=1)) ** 2
+    turned = geodesic_angle(
+        seat_rotation(chain, record.angle), seat_rotation(chain, modified.angle)
+    )
+    angular = (step, before.seat_angular_acceleration, after.seat_angular_acceleration)
     return {
         "joint_deviation_relative": deviation,
         "joint_deviation_relative_squared": deviation**2,
-        "mean_square_one_minus_p": float(integrate_sides(step, idle.mean(axis=2)) / step.sum()),
-        "joint_rms_rad": _by_joint(rms),
-        "end_error_rad": _by_joint(made.angle[-1] - wanted.angle[-1]),
-        "seat_rate_deviation_relative": _relative_norm(
-            step, run.after.seat_rate - run.before.seat_rate, run.before.seat_rate
-        ),
-        "seat_g_deviation_relative": _relative_norm(step, felt, run.before.seat_g),
-        "seat_g_rms_error_g": float(np.sqrt(felt_energy / step.sum())),
+        "mean_square_one_minus_p": _mean_square_one_minus_p(step, run.solution.control),
+        "joint_rms_rad": _by_joint(np.sqrt(square / step.sum())),
+        "start_error": _by_joint(modified.angle[0] - record.angle[0], "_rad")
+        | _by_joint(modified.rate_start[0] - record.rate_start[0], "_rad_s"),
+        "end_error_rad": _by_joint(modified.angle[-1] - record.angle[-1]),
+        "end_error_rad_s": _by_joint(modified.rate_end[-1] - record.rate_end[-1]),
+        "seat_rate_deviation_relative": relative_error(step, before.seat_rate, after.seat_rate),
+        "seat_g_deviation_relative": relative_error(step, before.seat_g, after.seat_g),
+        "seat_g_rms_error_g": rms_error(step, before.seat_g, after.seat_g),
+        "seat_angular_acceleration_deviation_relative": relative_error(*angular),
+        "seat_angular_acceleration_rms_error_rad_s2": rms_error(*angular),
         "attitude_error_max_deg": float(np.degrees(np.max(turned))),
-        "seat_g": {
-            axis: _felt_component(step, run.before.seat_g[..., index], run.after.seat_g[..., index])
-            for index, axis in enumerate(("gx", "gy", "gz"))
-        },
+        **tilt_error(step, before.seat_g, after.seat_g),
     }
 
 
-def _felt_component(step: Floats, before: Floats, after: Floats) -> dict[str, float]:
-    """Return peaks, onset rates, jumps and RMS error of one component of the G-vector.
-
-    The onset rate is the largest change from one sample to the next over the time
-    between them. It contains the jumps, where the joints' acceleration steps: these
-    are what they are on any grid, and the onset rate there grows as the step shrinks.
-    """
-    return {
-        "peak_before_g": float(np.max(np.abs(before))),
-        "peak_after_g": float(np.max(np.abs(after))),
-        "onset_before_g_s": _onset(step, before),
-        "onset_after_g_s": _onset(step, after),
-        "jump_before_g": float(np.max(np.abs(before[1:, 0] - before[:-1, 1]), initial=0.0)),
-        "jump_after_g": float(np.max(np.abs(after[1:, 0] - after[:-1, 1]), initial=0.0)),
-        "rms_error_g": float(np.sqrt(integrate_sides(step, (after - before) ** 2) / step.sum())),
-    }
-
-
-def _onset(step: Floats, values: Floats) -> float:
-    """Return the largest change from sample to sample over the time between them [g/s]."""
-    at_samples = np.append(values[:, 0], values[-1, 1])
-    return float(np.max(np.abs(np.diff(at_samples)) / step))
-
-
-def _relative_norm(step: Floats, off: Floats, size: Floats) -> float:
-    """Return sqrt(int |off|^2 / int |size|^2) of vectors on sides."""
-    energy = float(integrate_sides(step, np.sum(size**2, axis=-1)))
-    return float(np.sqrt(integrate_sides(step, np.sum(off**2, axis=-1)) / max(energy, 1e-300)))
+def _mean_square_one_minus_p(step: Floats, control: Floats) -> float | None:
+    """Return the mean of (1 - p)^2 over joints and time, None of a motion without factors."""
+    if not control.shape[1]:
+        return None
+    idle = (1.0 - np.stack([control[:-1], control[1:]], axis=1)) ** 2
+    return float(integrate_sides(step, idle.mean(axis=2)) / step.sum())
 
 
 def _executable(run: Measured) -> dict[str, Any]:
-    """Return what keeping the limits changed of the motion that was asked for."""
-    asked, desired = run.asked.motion, run.desired
+    """Return what keeping the limits alone cost against the motion that was asked for."""
+    record, desired, before = run.asked.motion, run.desired, run.before
+    replaced = desired is not record
+    profile = run.profile
+    after = respond(profile.machine, profile.seat, desired) if replaced else before
+    step = record.step
     return {
-        "replaced": desired is not asked,
-        "joint_change_relative": joint_deviation(asked, desired),
-        "joint_change_max_rad": _by_joint(np.max(np.abs(desired.angle - asked.angle), axis=0)),
+        "replaced": replaced,
+        "joint_change_relative": joint_deviation(record, desired),
+        "joint_change_max_rad": _by_joint(np.max(np.abs(desired.angle - record.angle), axis=0)),
+        "seat_rate_deviation_relative": relative_error(step, before.seat_rate, after.seat_rate),
+        "seat_g_rms_error_g": rms_error(step, before.seat_g, after.seat_g),
+        "seat_angular_acceleration_rms_error_rad_s2": rms_error(
+            step, before.seat_angular_acceleration, after.seat_angular_acceleration
+        ),
     }
 
 
-def _by_joint(values: Floats) -> dict[str, float]:
-    return {joint: float(value) for joint, value in zip(JOINTS, values, strict=True)}
-
-
-def _limits(
-    machine: Machine, motion: Motion, which: str, violations: tuple[Violation, ...]
-) -> dict[str, Any]:
-    peaks = measure_peaks(motion)
-    limit = np.array([joint.acceleration for joint in machine.limits])
-    full = np.abs(motion.acceleration) >= AT_LIMIT * limit
-    share = motion.step @ full / motion.step.sum()
-    broken = {(v.joint) for v in violations if v.motion == which}
-    return {
-        joint: {
-            "rate_peak_rad_s": float(peaks.rate[j]),
-            "rate_limit_rad_s": machine.limits[j].rate,
-            "acceleration_peak_rad_s2": float(peaks.acceleration[j]),
-            "acceleration_limit_rad_s2": machine.limits[j].acceleration,
-            "rate_step_rad_s": float(peaks.rate_step[j]),
-            "at_acceleration_limit": float(share[j]),
-            "ok": joint not in broken,
-        }
-        for j, joint in enumerate(JOINTS)
-    }
+def _by_joint(values: Floats, unit: str = "") -> dict[str, float]:
+    return {f"{joint}{unit}": float(value) for joint, value in zip(JOINTS, values, strict=True)}
 
 
 def _singularity(run: Measured) -> dict[str, Any]:

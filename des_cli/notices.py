@@ -6,16 +6,27 @@ from typing import Any
 
 import numpy as np
 
+from des_cli.model.coriolis import COMPONENTS
+from des_cli.model.metric import METRICS, MetricKey
 from des_cli.model.motion import DesiredMotion
+from des_cli.results.worse import find_worse
 
 BOUGHT = 0.05
 """Relative growth of a Coriolis component's energy that is worth a sentence."""
 
 FELT = 0.25
-"""Relative deviation of the seat's angular rate that is worth a sentence."""
+"""Relative deviation of the seat's angular rate or G-vector that is worth a sentence."""
 
-HARD = 0.1
-"""Share of the time at the acceleration limit that is worth a sentence."""
+RESTRAINING = frozenset(
+    {
+        "mean_square_one_minus_p",
+        "seat_rate_deviation_relative",
+        "seat_angular_acceleration_deviation_relative",
+        "seat_angular_acceleration_rms_error_rad_s2",
+    }
+)
+"""Metrics whose budget holds back rates or accelerations. Without one of them nothing in
+the problem does: it is ill-posed, and its commands jump from limit to limit."""
 
 NOTICEABLE = 1e-3
 """Change of a desired angle [rad] by the limits that is worth a sentence."""
@@ -34,17 +45,19 @@ def find_notices(asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
     Returns
     -------
     list of str
-        On a damped inverse, a replaced desired motion, a Coriolis that grew or
-        was bought with another or was not there, a motion that feels different,
-        hard commands, and a solver that stopped short of its tolerance.
+        On a ride that got worse or feels different, budgets that let the commands
+        chatter, a damped inverse, a replaced desired motion, a cross-coupling that
+        grew or was bought with another or was not there, and a solver that stopped
+        short of its tolerance.
     """
     found = [
+        _worse(metrics),
+        _felt(metrics),
+        _ill_posed(metrics),
         _damped(asked),
         _replaced(metrics),
         _nothing(metrics),
         _bought(metrics),
-        _felt(metrics),
-        _hard(metrics),
         _short(metrics),
     ]
     return [sentence for sentence in found if sentence]
@@ -73,60 +86,86 @@ def _replaced(metrics: dict[str, Any]) -> str:
         return ""
     return (
         "the desired motion breaks limits; it was replaced by the nearest one inside them, "
-        f"changed by up to {', '.join(moved)}"
+        f"changed by up to {', '.join(moved)}; what is felt is measured against the profile"
     )
 
 
 def _bought(metrics: dict[str, Any]) -> str:
-    parts = dict(metrics["coriolis"])
-    objective = parts.pop("objective")["reduction"]
+    parts = metrics["coriolis"]
+    objective = parts["objective"]["reduction"]
     if not _usable(metrics):
         return ""
     if objective is not None and objective < 0.0:
-        return f"the Coriolis that r1 weighs grew by {-100 * objective:.3g} %: nothing was gained"
+        return (
+            f"the cross-coupling that r1 weighs grew by {-100 * objective:.3g} %: "
+            "nothing was gained"
+        )
     grown = [
-        f"{name} grew by {-100 * part['reduction']:.0f} %"
-        for name, part in parts.items()
-        if part["reduction"] is not None and part["reduction"] < -BOUGHT
+        f"{component.label} grew by {-100 * reduction:.0f} %"
+        for component in COMPONENTS
+        if (reduction := parts[component.key]["reduction"]) is not None and reduction < -BOUGHT
     ]
     return f"one component was bought with another: {', '.join(grown)}" if grown else ""
+
+
+def _worse(metrics: dict[str, Any]) -> str:
+    """Say what a pilot would rather not have, with all its numbers."""
+    found = find_worse(metrics) if _usable(metrics) else []
+    if not found:
+        return ""
+    missing = [
+        key
+        for key in ("seat_rate_deviation_relative", "seat_angular_acceleration_rms_error_rad_s2")
+        if key not in (metrics["solver"].get("budget") or {})
+    ]
+    cure = f"a budget on {' or '.join(missing)} bounds that" if missing else "tighten the budgets"
+    return f"worse to sit in than the profile: {', '.join(map(str, found))}; {cure}"
 
 
 def _felt(metrics: dict[str, Any]) -> str:
     """Say that a small change of angles is not a small change of what is felt."""
     fidelity = metrics["fidelity"]
-    rate, joints = fidelity["seat_rate_deviation_relative"], fidelity["joint_deviation_relative"]
-    force = fidelity["seat_g_deviation_relative"]
-    if not _usable(metrics) or max(rate, force) < FELT:
+    budget = metrics["solver"].get("budget") or {}
+    measures: tuple[MetricKey, ...] = ("seat_rate_deviation_relative", "seat_g_deviation_relative")
+    off = {key: fidelity[key] for key in measures if key not in budget and fidelity[key] >= FELT}
+    if not _usable(metrics) or not off:
         return ""
+    said = ", ".join(
+        f"{METRICS[key].label} is off by {100 * value:.0f} %" for key, value in off.items()
+    )
+    joints = 100 * fidelity["joint_deviation_relative"]
     return (
-        f"what the pilot feels is changed: the seat's angular rate is off by {100 * rate:.0f} %, "
-        f"its G by {100 * force:.0f} %, at {100 * joints:.1f} % in the joints; a budget on "
-        "seat_rate_deviation_relative or seat_g_deviation_relative bounds that"
+        f"what the pilot feels is changed: {said}, at {joints:.1f} % in the joints; "
+        f"a budget on {' or '.join(off)} bounds that"
     )
 
 
-def _hard(metrics: dict[str, Any]) -> str:
-    """Say where the commands drive a joint to its acceleration limit again and again."""
-    hard = [
-        f"{joint} {100 * part['at_acceleration_limit']:.0f} %"
-        for joint, part in metrics["limits"]["modified"].items()
-        if part["at_acceleration_limit"] > HARD
-    ]
-    jump = max(part["jump_after_g"] for part in metrics["fidelity"]["seat_g"].values())
-    if not hard or not _usable(metrics):
+def _ill_posed(metrics: dict[str, Any]) -> str:
+    """Say that the budgets leave the rates free, and how the commands look for it."""
+    solver = metrics["solver"]
+    budget = solver.get("budget") or {}
+    posed = solver.get("control") == "scalar" or solver.get("objective", "coriolis") != "coriolis"
+    if not budget or RESTRAINING & set(budget) or posed or not _usable(metrics):
         return ""
+    labels = " and ".join(METRICS[key].label for key in budget)
+    driven = {
+        joint: part["acceleration_sign_changes"]
+        for joint, part in metrics["limits"]["modified"].items()
+    }
+    joint = max(driven, key=lambda name: driven[name])
+    share = metrics["limits"]["modified"][joint]["at_acceleration_limit"]
     return (
-        f"the commands stand at the acceleration limit for much of the time ({', '.join(hard)}) "
-        f"and jump from one to the other side of it: the seat's G jumps by up to {jump:.2g} g; "
-        "weights r2 and tracking instead of a budget make it smoother"
+        f"a budget on {labels} alone is ill-posed: the commands chatter (the {joint}'s "
+        f"acceleration changes sign {driven[joint]} times and is at its limit for "
+        f"{100 * share:.0f} % of the time); add a budget on seat_rate_deviation_relative, "
+        "or objective: blend"
     )
 
 
 def _nothing(metrics: dict[str, Any]) -> str:
     if metrics["coriolis"]["vector"]["reduction"] is not None:
         return ""
-    return "the desired motion makes no Coriolis: there is nothing to reduce"
+    return "the desired motion makes no cross-coupling: there is nothing to reduce"
 
 
 def _short(metrics: dict[str, Any]) -> str:

@@ -55,7 +55,7 @@ def reduce_profile(
         solution = not_attempted(problem, trouble)
     else:
         posed, solution = solve(problem, wanted, on_iteration)
-    before = respond(profile.machine, profile.seat, desired)
+    before = respond(profile.machine, profile.seat, asked.motion)
     after = respond(profile.machine, profile.seat, solution.modified)
     violations = find_violations(profile.machine, asked.motion, "desired") + find_violations(
         profile.machine, solution.modified, "modified"

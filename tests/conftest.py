@@ -144,7 +144,8 @@ def _response(motion: Motion) -> Response:
     parts = np.stack([0.1 * rate, 0.6 * rate**2, 0.05 * seat], axis=-2)
     gravity = np.stack([s2, np.zeros_like(s2), -c2], axis=-1)
     report = np.stack([ab3, bb3, cb3], axis=-1)
-    return Response(report, seat, rate, parts, parts.sum(axis=-2) + gravity)
+    total = 0.3 * motion.acceleration[:, None, :] + seat
+    return Response(report, seat, rate, total, parts, parts.sum(axis=-2) + gravity)
 
 
 def _component(before: Floats, after: Floats) -> dict[str, float]:

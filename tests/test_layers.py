@@ -14,7 +14,7 @@ LAYERS = (
     ("model",),
     ("kinematics",),
     ("reduction",),
-    ("metrics", "notices", "pipeline", "tradeoff"),
+    ("results", "metrics", "notices", "pipeline", "tradeoff"),
     ("files", "plots", "report"),
     ("failure", "job", "pool", "batch", "sweep"),
     ("cli", "__main__"),

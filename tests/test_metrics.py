@@ -14,6 +14,7 @@ from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.profile import BodyRates, JointCommands, Profile, Reduction
 from des_cli.pipeline import reduce_profile
+from des_cli.results.felt import tilt_error
 
 JOINTS = ("arm", "fork", "cab")
 WEIGHTS = Reduction(axes="seat", limits="warn", budget=())
@@ -31,7 +32,15 @@ CONTRACT = {
         "joint_deviation_relative", "joint_deviation_relative_squared",
         "mean_square_one_minus_p", "joint_rms_rad", "end_error_rad",
         "seat_rate_deviation_relative", "seat_g_deviation_relative", "seat_g_rms_error_g",
-        "attitude_error_max_deg",
+        "seat_angular_acceleration_deviation_relative",
+        "seat_angular_acceleration_rms_error_rad_s2", "attitude_error_max_deg",
+        "tilt_error_max_deg", "tilt_error_rms_deg", "start_error", "end_error_rad_s",
+    },
+    "felt": {"seat_rate", "seat_angular_acceleration", "seat_g"},
+    "executable": {
+        "replaced", "joint_change_relative", "joint_change_max_rad",
+        "seat_rate_deviation_relative", "seat_g_rms_error_g",
+        "seat_angular_acceleration_rms_error_rad_s2",
     },
     "baseline": {"report_sweep", "constant_p"},
     "limits": {"desired", "modified"},
@@ -117,16 +126,17 @@ def test_keys_of_the_contract(run):
         for joint in JOINTS:
             assert set(run.metrics["limits"][which][joint]) >= {
                 "rate_peak_rad_s", "rate_limit_rad_s", "acceleration_peak_rad_s2",
-                "acceleration_limit_rad_s2", "ok",
+                "acceleration_limit_rad_s2", "jerk_peak_rad_s3", "jerk_limit_rad_s3",
+                "acceleration_sign_changes", "ok",
             }  # fmt: skip
-    for name in ("joint_rms_rad", "end_error_rad"):
+    for name in ("joint_rms_rad", "end_error_rad", "end_error_rad_s"):
         assert set(run.metrics["fidelity"][name]) == set(JOINTS)
 
 
 def test_they_are_plain_numbers_without_clock_or_path(run):
     text = json.dumps(run.metrics, allow_nan=False)
     assert json.loads(text) == run.metrics
-    assert "/" not in text.replace("rad/s", "")
+    assert "/" not in text.replace("rad/s", "").replace("g/s", "")
     again = json.dumps(reduce_profile(sway()).metrics, allow_nan=False)
     assert again == text
 
@@ -175,6 +185,12 @@ def test_joint_fidelity(run):
         assert fidelity["joint_rms_rad"][joint] == pytest.approx(math.sqrt(squares[j] / 6.0))
         gap = made.angle[-1, j] - wanted.angle[-1, j]
         assert fidelity["end_error_rad"][joint] == pytest.approx(gap)
+        gap = made.rate_end[-1, j] - wanted.rate_end[-1, j]
+        assert fidelity["end_error_rad_s"][joint] == pytest.approx(gap)
+        assert fidelity["start_error"][f"{joint}_rad"] == 0.0
+        gap = made.rate_start[0, j] - wanted.rate_start[0, j]
+        assert (abs(gap) > 1e-4) == (joint != "fork")  # which starts from rest
+        assert fidelity["start_error"][f"{joint}_rad_s"] == pytest.approx(gap)
 
 
 def test_felt_fidelity(run):
@@ -205,20 +221,168 @@ def test_felt_fidelity(run):
     assert fidelity["attitude_error_max_deg"] == pytest.approx(largest, rel=1e-6)
 
 
-def test_onset_and_jump_of_the_g_vector(run):
+def turning(motion):
+    """dW/dt in seat axes: W by a matrix written out, and its chain rule by differences."""
+    angle, rate = on_sides(motion)
+
+    def seat_rate(q, qd):
+        (s2, s3), (c2, c3) = (np.moveaxis(f(q[..., 1:]), -1, 0) for f in (np.sin, np.cos))
+        a, f, k = np.moveaxis(qd, -1, 0)
+        return np.stack([-s2 * a - k, -c2 * s3 * a + c3 * f, c2 * c3 * a + s3 * f], axis=-1)
+
+    h, qdd = 1e-6, motion.acceleration[:, None]
+    ahead, behind = (seat_rate(angle + s * rate, rate + s * qdd) for s in (h, -h))
+    return seat_rate(angle, rate), (ahead - behind) / (2 * h)
+
+
+def test_what_is_felt_before_and_after(run):
+    record = run.asked.motion
+    before, after = turning(record), turning(run.solution.modified)
+    for section, unit, old, new in (
+        ("seat_rate", "rad_s", before[0], after[0]),
+        ("seat_angular_acceleration", "rad_s2", before[1], after[1]),
+    ):
+        found = run.metrics["felt"][section]
+        names = "pqr" if section == "seat_rate" else "xyz"
+        assert set(found) == {*names, "magnitude"}
+        for when, vectors in (("before", old), ("after", new)):
+            columns = [*np.moveaxis(vectors, -1, 0), np.linalg.norm(vectors, axis=-1)]
+            for name, sides in zip((*names, "magnitude"), columns, strict=True):
+                rms = math.sqrt(integral(record, sides**2) / 6.0)
+                assert found[name][f"rms_{when}_{unit}"] == pytest.approx(rms, rel=1e-7)
+                peak = np.abs(sides).max()
+                assert found[name][f"peak_{when}_{unit}"] == pytest.approx(peak, rel=1e-7)
+    fidelity = run.metrics["fidelity"]
+    off = integral(record, np.sum((after[1] - before[1]) ** 2, axis=-1))
+    size = integral(record, np.sum(before[1] ** 2, axis=-1))
+    assert fidelity["seat_angular_acceleration_rms_error_rad_s2"] == pytest.approx(
+        math.sqrt(off / 6.0), rel=1e-7
+    )
+    assert fidelity["seat_angular_acceleration_deviation_relative"] == pytest.approx(
+        math.sqrt(off / size), rel=1e-7
+    )
+
+
+def test_the_g_vector_by_axis(run):
     for index, axis in enumerate(("gx", "gy", "gz")):
-        found = run.metrics["fidelity"]["seat_g"][axis]
+        found = run.metrics["felt"]["seat_g"][axis]
         for when, response in (("before", run.before), ("after", run.after)):
             sides = response.seat_g[..., index]
-            # from just after one sample to just after the next: slope and jump together
-            rise = [
-                abs((sides[k + 1, 0] if k + 1 < len(sides) else sides[k, 1]) - sides[k, 0])
-                / run.desired.step[k]
-                for k in range(len(sides))
-            ]
             jump = [abs(sides[k + 1, 0] - sides[k, 1]) for k in range(len(sides) - 1)]
-            assert found[f"onset_{when}_g_s"] == pytest.approx(max(rise))
             assert found[f"jump_{when}_g"] == pytest.approx(max(jump))
+            assert found[f"min_{when}_g"] == sides.min()
+            assert found[f"max_{when}_g"] == sides.max()
+            assert found[f"peak_{when}_g"] == max(-sides.min(), sides.max())
+            # the samples lie 0.02 s apart: five of them are the onset's window, whose
+            # ends lie just before or just after the jumps at two samples
+            rise = [
+                abs(sides[k + 5, side] - sides[k, side]) / 0.1
+                for k in range(len(sides) - 5)
+                for side in (0, 1)
+            ]
+            assert found[f"onset_{when}_g_s"] == pytest.approx(max(rise), rel=1e-6)
+        off = run.after.seat_g[..., index] - run.before.seat_g[..., index]
+        rms = math.sqrt(integral(run.desired, off**2) / 6.0)
+        assert found["rms_error_g"] == pytest.approx(rms)
+
+
+def test_tilt_is_the_angle_between_the_g_vectors(run):
+    before, after = run.before.seat_g, run.after.seat_g
+    cosine = np.sum(before * after, axis=-1)
+    cosine /= np.linalg.norm(before, axis=-1) * np.linalg.norm(after, axis=-1)
+    angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    fidelity = run.metrics["fidelity"]
+    assert fidelity["tilt_error_max_deg"] == pytest.approx(angle.max(), rel=1e-6)
+    rms = math.sqrt(integral(run.asked.motion, angle**2) / 6.0)
+    assert fidelity["tilt_error_rms_deg"] == pytest.approx(rms, rel=1e-6)
+
+
+def test_a_weightless_pilot_has_no_down_that_could_tilt():
+    step = np.array([1.0, 3.0])
+    down, sideways, hardly = [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 0.05, 0.0]
+    before = np.array([[down, down], [down, hardly]])
+    found = tilt_error(step, before, np.array([[down, sideways], [hardly, down]]))
+    # the first interval alone counts: half of it upright, half of it on the side
+    assert found["tilt_error_max_deg"] == pytest.approx(90.0)
+    assert found["tilt_error_rms_deg"] == pytest.approx(90.0 / math.sqrt(2.0))
+    nothing = tilt_error(step, 0.05 * before, before)
+    assert nothing == {"tilt_error_max_deg": None, "tilt_error_rms_deg": None}
+
+
+def test_what_is_felt_is_measured_against_the_record():
+    """The cab turns back at once; rounded off, the motion is no longer what was recorded."""
+    profile = sway(120)
+    hold = replace(profile.reduction, r2=np.full(3, 1e9), limits="enforce")
+    run = reduce_profile(replace(profile, reduction=hold))
+    assert run.desired is not run.asked.motion
+    record, modified = turning(run.asked.motion), turning(run.solution.modified)
+    executable = turning(run.desired)
+    motion = run.asked.motion
+
+    def error(one, other):
+        return math.sqrt(integral(motion, np.sum((other - one) ** 2, axis=-1)) / 6.0)
+
+    found = run.metrics["fidelity"]["seat_angular_acceleration_rms_error_rad_s2"]
+    assert found == pytest.approx(error(record[1], modified[1]), rel=1e-6)
+    cost = run.metrics["executable"]
+    key = "seat_angular_acceleration_rms_error_rad_s2"
+    assert cost["replaced"] is True
+    assert cost[key] == pytest.approx(error(record[1], executable[1]), rel=1e-6)
+    assert cost[key] > 0.1
+    size = integral(motion, np.sum(record[0] ** 2, axis=-1))
+    assert cost["seat_rate_deviation_relative"] == pytest.approx(
+        error(record[0], executable[0]) / math.sqrt(size / 6.0), rel=1e-6
+    )
+    # nothing but the limits moved it
+    for measure in (key, "seat_rate_deviation_relative", "seat_g_rms_error_g"):
+        assert run.metrics["fidelity"][measure] == pytest.approx(cost[measure], rel=1e-3)
+
+
+def test_a_motion_that_is_not_replaced_costs_nothing(run):
+    assert run.metrics["executable"] == {
+        "replaced": False,
+        "joint_change_relative": 0.0,
+        "joint_change_max_rad": dict.fromkeys(JOINTS, 0.0),
+        "seat_rate_deviation_relative": 0.0,
+        "seat_g_rms_error_g": 0.0,
+        "seat_angular_acceleration_rms_error_rad_s2": 0.0,
+    }
+
+
+def test_jerk_and_sign_changes(run):
+    for which, motion in (("desired", run.asked.motion), ("modified", run.solution.modified)):
+        for j, joint in enumerate(JOINTS):
+            found = run.metrics["limits"][which][joint]
+            middle = 0.5 * (motion.t[1:] + motion.t[:-1])
+            slope = np.diff(motion.acceleration[:, j]) / np.diff(middle)
+            smooth = np.abs(motion.rate_start[1:, j] - motion.rate_end[:-1, j]) < 1e-9
+            assert smooth.all() == (joint != "cab")
+            assert found["jerk_peak_rad_s3"] == pytest.approx(np.abs(slope[smooth]).max())
+            assert found["acceleration_sign_changes"] == changes(
+                motion.acceleration[:, j], 0.01 * DES.limits[j].acceleration
+            )
+    # a cosine's rate: its acceleration is a sine, up and down within 6 s
+    assert run.metrics["limits"]["desired"]["arm"]["acceleration_sign_changes"] == 1
+
+
+def changes(values, least):
+    last, count = 0.0, 0
+    for value in values:
+        if abs(value) > least:
+            count += last * value < 0.0
+            last = value
+    return count
+
+
+def test_a_machine_without_a_jerk_limit_has_none():
+    limits = tuple(replace(limit, jerk=math.inf) for limit in DES.limits)
+    profile = replace(sway(60), machine=replace(DES, limits=limits))
+    found = reduce_profile(profile).metrics["limits"]["modified"]
+    assert all(found[joint]["jerk_limit_rad_s3"] is None for joint in JOINTS)
+    limits = tuple(replace(limit, jerk=7.5) for limit in DES.limits)
+    profile = replace(profile, machine=replace(DES, limits=limits))
+    found = reduce_profile(profile).metrics["limits"]["modified"]
+    assert all(found[joint]["jerk_limit_rad_s3"] == 7.5 for joint in JOINTS)
 
 
 def test_the_time_at_the_acceleration_limit(run):

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.notices import find_notices
 
@@ -26,25 +27,31 @@ def metrics(
     objective: float | None = 0.5,
     vector: float | None = 0.4,
     felt: float = 0.1,
-    at_limit: float = 0.0,
+    turning: float = 0.4,
+    solver: dict[str, Any] | None = None,
     **reductions: float | None,
 ) -> dict[str, Any]:
-    coriolis = {name: {"reduction": value} for name, value in reductions.items()}
+    coriolis: dict[str, Any] = {each.key: {"reduction": None} for each in COMPONENTS}
+    coriolis |= {name: {"reduction": value} for name, value in reductions.items()}
     coriolis["vector"] = {"reduction": vector}
-    quiet = {"at_acceleration_limit": 0.0}
+    quiet = {"at_acceleration_limit": 0.0, "acceleration_sign_changes": 2}
     return {
-        "solver": {"status": status, "message": "off by 1e-7"},
+        "solver": {"status": status, "message": "off by 1e-7"} | (solver or {}),
         "coriolis": {**coriolis, "objective": {"reduction": objective}},
         "executable": {"joint_change_max_rad": {"arm": 0.0, "fork": 0.5 * change, "cab": change}},
         "fidelity": {
             "joint_deviation_relative": 0.05,
             "seat_rate_deviation_relative": felt,
             "seat_g_deviation_relative": 0.5 * felt,
-            "seat_g": {axis: {"jump_after_g": 0.37} for axis in ("gx", "gy", "gz")},
+        },
+        "felt": {
+            "seat_angular_acceleration": {
+                "magnitude": {"rms_before_rad_s2": 0.4, "rms_after_rad_s2": turning}
+            }
         },
         "limits": {
             "modified": {
-                "arm": {"at_acceleration_limit": at_limit},
+                "arm": {"at_acceleration_limit": 0.97, "acceleration_sign_changes": 13},
                 "fork": quiet,
                 "cab": quiet,
             }
@@ -72,7 +79,7 @@ def test_a_replaced_motion_is_told_by_joint_where_it_can_be_noticed() -> None:
 @pytest.mark.parametrize("status", ["converged", "acceptable"])
 def test_a_bought_component_is_told(status: str) -> None:
     notice = find_notices(asked(), metrics(status=status, bb3=0.7, ab3=-0.28, cb3=-7.0))[0]
-    assert notice == "one component was bought with another: ab3 grew by 28 %, cb3 grew by 700 %"
+    assert notice == "one component was bought with another: AB3 grew by 28 %, CB3 grew by 700 %"
 
 
 def test_a_solution_that_is_none_has_bought_nothing() -> None:
@@ -86,16 +93,57 @@ def test_a_worse_motion_is_not_called_bought() -> None:
 
 def test_a_motion_that_feels_different_is_told() -> None:
     (notice,) = find_notices(asked(), metrics(felt=0.51))
-    assert "angular rate is off by 51 %, its G by 26 %, at 5.0 % in the joints" in notice
+    assert "seat rate is off by 51 %, G is off by 26 %, at 5.0 % in the joints" in notice
+    assert "a budget on seat_rate_deviation_relative or seat_g_deviation_relative" in notice
     assert find_notices(asked(), metrics(felt=0.2)) == []
     assert find_notices(asked(), metrics(felt=0.51, status="infeasible")) == []
+    rate = {"budget": {"seat_rate_deviation_relative": 0.51}}
+    (notice,) = find_notices(asked(), metrics(felt=0.51, solver=rate))
+    assert "changed: G is off by 26 %" in notice
 
 
-def test_hard_commands_are_told() -> None:
-    (notice,) = find_notices(asked(), metrics(at_limit=0.97))
-    assert "(arm 97 %)" in notice
-    assert "jumps by up to 0.37 g" in notice
-    assert find_notices(asked(), metrics(at_limit=0.05)) == []
+def test_a_ride_that_got_worse_is_told_first_with_its_numbers_and_a_cure() -> None:
+    found = find_notices(asked(), metrics(turning=2.2, felt=0.51))
+    assert found[0] == (
+        "worse to sit in than the profile: total angular acceleration 0.4 -> 2.2 rad/s² rms; "
+        "a budget on seat_rate_deviation_relative or seat_angular_acceleration_rms_error_rad_s2 "
+        "bounds that"
+    )
+    both = dict.fromkeys(
+        ("seat_rate_deviation_relative", "seat_angular_acceleration_rms_error_rad_s2"), 0.5
+    )
+    (notice,) = find_notices(asked(), metrics(turning=2.2, solver={"budget": both}))
+    assert notice.endswith("; tighten the budgets")
+    assert find_notices(asked(), metrics(turning=2.2, status="diverged")) == []
+
+
+@pytest.mark.parametrize(
+    ("budget", "labels"),
+    [
+        ({"joint_deviation_relative": 0.05}, "joints"),
+        ({"seat_g_rms_error_g": 0.1}, "G error"),
+        ({"joint_deviation_relative": 0.05, "seat_g_rms_error_g": 0.1}, "joints and G error"),
+    ],
+)
+@pytest.mark.parametrize("control", ["free", "per-joint"])
+def test_a_budget_that_leaves_the_rates_free_is_told(
+    control: str, budget: dict[str, float], labels: str
+) -> None:
+    solver = {"budget": budget, "control": control, "objective": "coriolis"}
+    (notice,) = find_notices(asked(), metrics(solver=solver))
+    assert notice == (
+        f"a budget on {labels} alone is ill-posed: the commands chatter (the arm's acceleration "
+        "changes sign 13 times and is at its limit for 97 % of the time); add a budget on "
+        "seat_rate_deviation_relative, or objective: blend"
+    )
+    restrained = budget | {"seat_rate_deviation_relative": 0.1}
+    for change in (
+        {"budget": restrained},
+        {"objective": "blend"},
+        {"control": "scalar"},
+        {"budget": None},
+    ):
+        assert find_notices(asked(), metrics(solver=solver | change)) == []
 
 
 def test_no_coriolis_is_told() -> None:

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-from typing import Any
-
 from des_cli.cli.console import Console
+from des_cli.cli.summary_rows import (
+    changes,
+    limits_used,
+    number,
+    objective_keys,
+    percent,
+    summary_rows,
+)
 from des_cli.errors import ExitCode
 from des_cli.failure import Failure
 from des_cli.job import JobResult
+from des_cli.results.reading import number as read
+from des_cli.results.worse import worse_words
 
-_LABEL_WIDTH = 11
-
-_COMPONENTS = {
-    "ab3": "AB3",
-    "bb3": "BB3",
-    "cb3": "CB3",
-    "vector": "whole vector",
-    "seat_x": "seat x",
-    "seat_y": "seat y",
-    "seat_z": "seat z",
-}
+_LABEL_WIDTH = 14
 
 
 def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
@@ -44,7 +40,8 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
         console.say(_short_line(console, result))
         return
     if alone:
-        console.say(_headline(console, result))
+        for line in _headlines(console, result):
+            console.say(line)
         for label, text in summary_rows(result):
             console.say(f"  {label:<{_LABEL_WIDTH}} {text}")
     else:
@@ -53,7 +50,8 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
     whose = "" if alone else f"{result.name}: "
     console.warn(f"{label}{whose}{line}" for line in result.violations)
     if alone and not any(line.startswith("modified") for line in result.violations):
-        console.say(label + ("kept by the modified motion" if result.violations else "all kept"))
+        kept = "kept by the modified motion" if result.violations else "all kept"
+        console.say(f"{label}{kept}{limits_used(result.metrics)}")
     for notice in result.notices:
         console.say(console.style(f"  {'notice':<{_LABEL_WIDTH}} {notice}", "warning"))
     if alone and result.table is None:
@@ -82,101 +80,26 @@ def print_closing(console: Console, results: list[JobResult], planned: int) -> N
     console.say(console.style(text, "error" if failed else "good"))
 
 
-def summary_rows(result: JobResult) -> list[tuple[str, str]]:
-    """Return labels and texts of the summary, from the metrics alone."""
-    assert result.metrics is not None
-    metrics = result.metrics
-    fidelity = metrics["fidelity"]
-    rows = [
-        ("Coriolis", _changes(metrics, _objective(result))),
-        ("", _changes(metrics, ("seat_x", "seat_y", "seat_z"))),
-        (
-            "deviation",
-            f"joints {percent(fidelity['joint_deviation_relative'])} "
-            f"(squared {percent(fidelity['joint_deviation_relative_squared'])})",
-        ),
-        (
-            "felt",
-            f"seat rate {percent(fidelity['seat_rate_deviation_relative'])}, "
-            f"G {percent(fidelity['seat_g_deviation_relative'])} "
-            f"({number(fidelity['seat_g_rms_error_g'])} g rms)",
-        ),
-    ]
-    for metric, most in (metrics["solver"].get("budget") or {}).items():
-        rows.append(("budget", f"{metric} at most {number(most)}, is {fidelity[metric]:.4g}"))
-    texts = _baselines(metrics.get("baseline") or {})
-    return rows + [("compare" if not i else "", text) for i, text in enumerate(texts)]
-
-
-def change(reduction: float | None) -> str:
-    """Say a reduction in words that need no sign.
-
-    >>> change(0.689), change(-0.28), change(None)
-    ('68.9 % less', '28.0 % more', 'not known')
-    """
-    if reduction is None or not math.isfinite(reduction):
-        return "not known"
-    return f"{percent(abs(reduction))} {'less' if reduction >= 0 else 'more'}"
-
-
-def percent(value: float | None) -> str:
-    """Write a ratio in percent, with digits that mean something.
-
-    >>> percent(0.6892), percent(0.00163), percent(7.5)
-    ('68.9 %', '0.16 %', '750 %')
-    """
-    if value is None or not math.isfinite(value):
-        return "not known"
-    hundredths = 100.0 * value
-    size = abs(hundredths)
-    digits = 0 if size >= 100 else 1 if size >= 1 else 2
-    return f"{hundredths:.{digits}f} %"
-
-
-def number(value: float | None) -> str:
-    """Write a number with three digits."""
-    return "not known" if value is None or not math.isfinite(value) else f"{value:.3g}"
-
-
-def _objective(result: JobResult) -> tuple[str, ...]:
-    """Name the component that was weighed, if it is one, and the whole vector."""
-    return (*(result.objective if len(result.objective) == 1 else ()), "vector")
-
-
-def _changes(metrics: Mapping[str, Any], keys: tuple[str, ...]) -> str:
-    coriolis = metrics["coriolis"]
-    return ", ".join(f"{_COMPONENTS[key]} {change(coriolis[key]['reduction'])}" for key in keys)
-
-
-def _baselines(baseline: Mapping[str, Any]) -> list[str]:
-    """Say what the same profile gets without the optimum."""
-    texts = []
-    sweep = baseline.get("report_sweep")
-    if sweep:
-        texts.append(
-            f"the study's sweep: {change(sweep['reduction'])} "
-            f"at joints {percent(sweep['joint_deviation_relative'])}"
-        )
-    constant = baseline.get("constant_p")
-    if constant:
-        texts.append(
-            f"as much by a constant p = {number(constant['p'])}: "
-            f"joints {percent(constant['joint_deviation_relative'])}"
-        )
-    return texts
-
-
-def _headline(console: Console, result: JobResult) -> str:
+def _headlines(console: Console, result: JobResult) -> list[str]:
+    """Return the first lines: what got worse, if anything, then how it was solved."""
     assert result.metrics is not None
     solver = result.metrics["solver"]
     steps = "1 iteration" if solver["iterations"] == 1 else f"{solver['iterations']} iterations"
     how = (
-        f"{solver['method']} Coriolis by {solver['algorithm']}, "
+        f"{solver['method']} cross-coupling by {solver['algorithm']}, "
         f"{solver['control']} control, {solver['axes']} axes"
     )
     look = "good" if solver["status"] == "converged" else "warning"
-    status = console.style(f"{solver['status']} in {steps}", look)
-    return f"{console.style(result.name, 'title')}: {status} ({how})"
+    ended = console.style(f"{solver['status']} in {steps}", look)
+    status = f"{ended} ({how})"
+    name = console.style(result.name, "title")
+    worse = worse_words(result.metrics)
+    if not worse:
+        return [f"{name}: {status}"]
+    return [
+        f"{name}: {console.style(worse, 'warning')}",
+        f"  {'solved':<{_LABEL_WIDTH}} {status}",
+    ]
 
 
 def _short_line(console: Console, result: JobResult) -> str:
@@ -186,9 +109,13 @@ def _short_line(console: Console, result: JobResult) -> str:
     if result.state == "planned":
         return f"{name} would be reduced into {result.written}"
     assert result.metrics is not None
-    joints = percent(result.metrics["fidelity"]["joint_deviation_relative"])
-    gained = _changes(result.metrics, _objective(result))
-    return f"{name} {gained}, joints {joints}  {console.style(result.written, 'good')}"
+    rate = percent(read(result.metrics, "fidelity.seat_rate_deviation_relative"))
+    error = number(read(result.metrics, "fidelity.seat_g_rms_error_g"))
+    gained = changes(result.metrics, objective_keys(result))
+    worse = worse_words(result.metrics, short=True)
+    told = f"{console.style(worse, 'warning')}; " if worse else ""
+    cost = f"seat rate {rate}, G {error} g rms"
+    return f"{name} {told}{gained}, {cost}  {console.style(result.written, 'good')}"
 
 
 def exit_code_of(results: list[JobResult], planned: int) -> ExitCode:

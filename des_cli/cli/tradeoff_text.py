@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from des_cli.cli.summary import change, number, percent
+from des_cli.cli.summary_rows import change, number, percent
 from des_cli.model.tradeoff import TradePoint
 
 # Columns: head, field, how a value is written.

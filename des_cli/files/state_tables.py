@@ -16,6 +16,7 @@ from itertools import product
 from des_cli.files.tables import SEAT_PARTS, TableFormat, encode_table
 from des_cli.kinematics.state_report import StateReport
 from des_cli.model.arrays import Floats
+from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
 
 GROUND, SEAT, FIRST = ("i0", "j0", "k0"), ("x", "y", "z"), ("1", "2", "3")
@@ -126,7 +127,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         "coriolis_{}_rad_s2",
         "Its Coriolis part (22)-(24), ground axes",
         "rad/s^2",
-        ("ab3", "bb3", "cb3"),
+        tuple(each.key for each in COMPONENTS if each.axes == "report"),
     ),
     _vector(
         "angular_seat",

@@ -16,9 +16,11 @@ import numpy as np
 
 from des_cli.errors import NotReleasedError, Problem
 from des_cli.model.arrays import Floats
+from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
 from des_cli.model.motion import Motion, mean_of_sides
 from des_cli.model.run import Run
+from des_cli.results.joints import jerk_at_samples
 from des_cli.units import split_unit
 
 TableFormat: TypeAlias = Literal["csv", "ndjson", "json", "parquet"]
@@ -67,12 +69,13 @@ def trajectory_columns(run: Run) -> dict[str, Floats]:
     -------
     dict of str to (n,) array
         Desired and modified joint motion, the factor ``p`` (or ``p_arm``,
-        ``p_fork``, ``p_cab``), the adjoint, the Coriolis vector in report and
-        in seat axes, the G-vector at the seat, and the split of the seat's
-        linear acceleration; ``before`` belongs to the desired motion and
-        ``after`` to the modified one. At the end the motion that was asked for:
-        the desired one is the nearest to it inside the limits, where these are
-        enforced. ``docs/formats.md`` lists the columns.
+        ``p_fork``, ``p_cab``, or none), the adjoint, the Coriolis vector in report
+        and in seat axes, the G-vector at the seat, the seat's rate and total angular
+        acceleration, and the split of the seat's linear acceleration; ``before``
+        belongs to the motion that the profile asks for and ``after`` to the modified
+        one. At the end the motion that the profile asks for: the desired one is the
+        nearest to it inside the limits, where these are enforced. ``docs/formats.md``
+        lists the columns.
     """
     before, after = run.before, run.after
     blocks = [
@@ -84,6 +87,8 @@ def trajectory_columns(run: Run) -> dict[str, Floats]:
         _interleaved(before.coriolis_report, after.coriolis_report),
         _interleaved(before.coriolis_seat, after.coriolis_seat),
         _interleaved(before.seat_g, after.seat_g),
+        _interleaved(before.seat_rate, after.seat_rate),
+        _interleaved(before.seat_angular_acceleration, after.seat_angular_acceleration),
         *(
             _interleaved(before.seat_parts[:, :, part], after.seat_parts[:, :, part])
             for part in range(len(SEAT_PARTS))
@@ -101,19 +106,22 @@ def trajectory_names(joints_of_p: int) -> tuple[str, ...]:
     Parameters
     ----------
     joints_of_p : int
-        1 for a factor p that all joints share, 3 for one per joint.
+        1 for a factor p that all joints share, 3 for one per joint, 0 for a motion
+        that is no multiple of the desired rates.
     """
     vectors = [
-        *((f"coriolis_{name}", "rad_s2") for name in ("ab3", "bb3", "cb3")),
-        *((f"coriolis_seat_{axis}", "rad_s2") for axis in "xyz"),
+        *((f"coriolis_{each.key}", "rad_s2") for each in COMPONENTS if each.axes == "report"),
+        *((f"coriolis_{each.key}", "rad_s2") for each in COMPONENTS if each.axes == "seat"),
         *((f"seat_g{axis}", "g") for axis in "xyz"),
+        *((f"seat_{axis}", "rad_s") for axis in "pqr"),
+        *((f"seat_angular_acceleration_{axis}", "rad_s2") for axis in "xyz"),
         *((f"seat_{part}_{axis}", "g") for part in SEAT_PARTS for axis in "xyz"),
     ]
     return (
         "t_s",
         *_motion_names("desired"),
         *_motion_names("modified"),
-        *(["p"] if joints_of_p == 1 else [f"p_{joint}" for joint in JOINTS]),
+        *(["p"] if joints_of_p == 1 else [f"p_{joint}" for joint in JOINTS[:joints_of_p]]),
         *(f"adjoint_{joint}" for joint in JOINTS),
         *(f"{stem}_{when}_{unit}" for stem, unit in vectors for when in ("before", "after")),
         *_motion_names("asked"),
@@ -121,7 +129,8 @@ def trajectory_names(joints_of_p: int) -> tuple[str, ...]:
 
 
 def _motion_names(which: str) -> list[str]:
-    return [f"{which}_{joint}_{unit}" for joint in JOINTS for unit in ("rad", "rad_s", "rad_s2")]
+    units = ("rad", "rad_s", "rad_s2", "rad_s3")
+    return [f"{which}_{joint}_{unit}" for joint in JOINTS for unit in units]
 
 
 def encode_table(columns: Mapping[str, Floats], format: TableFormat) -> bytes:
@@ -167,13 +176,11 @@ def _in_unit(name: str, si: Floats) -> Floats:
 
 
 def _motion_blocks(motion: Motion) -> list[Floats]:
-    """Return angle, rate and acceleration at samples, an (n, 3) array a joint."""
+    """Return angle, rate, acceleration and jerk at samples, an (n, 4) array a joint."""
     interval = motion.acceleration
     acceleration = mean_of_sides(np.stack([interval, interval], axis=1))
-    return [
-        np.stack([motion.angle[:, joint], motion.rate[:, joint], acceleration[:, joint]], axis=1)
-        for joint in range(len(JOINTS))
-    ]
+    course = np.stack([motion.angle, motion.rate, acceleration, jerk_at_samples(motion)], axis=2)
+    return [course[:, joint] for joint in range(len(JOINTS))]
 
 
 def _interleaved(before: Floats, after: Floats) -> Floats:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from des_cli.kinematics.chain import Chain, chain_of, joint_axes
-from des_cli.kinematics.coriolis import coriolis
+from des_cli.kinematics.coriolis import angular_acceleration_split, coriolis
 from des_cli.kinematics.seat import (
     in_seat_axes,
     linear_acceleration_parts,
@@ -44,10 +44,14 @@ def respond_on(chain: Chain, gravity: float, motion: Motion) -> Response:
     parts = linear_acceleration_parts(chain, angles, rates, accelerations)
     force = specific_force(chain, angles, parts.sum(axis=-2), gravity)
     spin = rates[..., None, :] @ joint_axes(chain, angles, "seat")
+    # dW/dt is the same vector whether W is taken along ground or along seat axes, for
+    # the seat's own turning adds W x W = 0.
+    noncoriolis, cross = angular_acceleration_split(chain, angles, rates, accelerations, "seat")
     return Response(
         coriolis_report=coriolis(chain, angles, rates, "report"),
-        coriolis_seat=coriolis(chain, angles, rates, "seat"),
+        coriolis_seat=cross,
         seat_rate=spin[..., 0, :],
+        seat_angular_acceleration=noncoriolis + cross,
         seat_parts=in_seat_axes(chain, angles, parts) / STANDARD_GRAVITY_M_S2,
         seat_g=pilot_g(force),
     )

@@ -22,6 +22,9 @@ class Response:
         The same vector along x, y, z of the seat [rad/s^2].
     seat_rate : (n - 1, 2, 3) array
         Angular velocity p, q, r along x, y, z of the seat [rad/s].
+    seat_angular_acceleration : (n - 1, 2, 3) array
+        Total angular acceleration dW/dt along x, y, z of the seat [rad/s^2], which
+        is what the semicircular canals answer to: J_b theta'' + c.
     seat_parts : (n - 1, 2, 3, 3) array
         Tangential, centripetal and Coriolis part (third axis) of the seat's
         linear acceleration along x, y, z of the seat [g].
@@ -33,5 +36,6 @@ class Response:
     coriolis_report: Floats
     coriolis_seat: Floats
     seat_rate: Floats
+    seat_angular_acceleration: Floats
     seat_parts: Floats
     seat_g: Floats

@@ -86,7 +86,7 @@ class Run:
         The same, or the nearest motion inside the limits where these are enforced.
     solution : Solution
     before, after : Response
-        Of the desired and of the modified motion.
+        Of the motion that the profile asks for, and of the modified one.
     checks : tuple of Check
         The independent verification.
     violations : tuple of Violation

@@ -10,6 +10,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from des_cli.results.budgets import spent_budgets
+
 NOTICEABLE = 1e-3
 """Change of a desired angle [rad] by the limits that is worth a word."""
 
@@ -31,16 +33,9 @@ def budget_words(metrics: Mapping[str, Any]) -> str:
 
     >>> budget_words({"solver": {"budget": {"seat_g_rms_error_g": 0.1}},
     ...               "fidelity": {"seat_g_rms_error_g": 0.09991}})
-    'seat_g_rms_error_g at most 0.1, is 0.09991'
+    'G error 0.09991 of 0.1 g'
     """
-    budget = _mapping(_mapping(metrics.get("solver")).get("budget"))
-    fidelity = _mapping(metrics.get("fidelity"))
-    parts = []
-    for metric, most in budget.items():
-        spent = fidelity.get(metric)
-        if _is_number(most) and _is_number(spent):
-            parts.append(f"{_line(metric)} at most {most:g}, is {spent:.4g}")
-    return "; ".join(parts)
+    return ", ".join(map(str, spent_budgets(metrics)))
 
 
 def change_words(metrics: Mapping[str, Any]) -> str:

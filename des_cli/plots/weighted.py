@@ -6,11 +6,11 @@ error here.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
-_COMPONENTS = {"report": ("ab3", "bb3", "cb3"), "seat": ("seat_x", "seat_y", "seat_z")}
+from des_cli.model.coriolis import COMPONENTS
+from des_cli.results.reading import lookup, number
 
 
 def weighted_component(metrics: Mapping[str, Any]) -> str | None:
@@ -23,11 +23,9 @@ def weighted_component(metrics: Mapping[str, Any]) -> str | None:
     >>> weighted_component({"solver": {"axes": "report"}})
     'bb3'
     """
-    solver = _mapping(metrics.get("solver"))
-    axes: Any = solver.get("axes")
-    r1: Any = solver.get("r1")
-    names = _COMPONENTS.get(axes) if isinstance(axes, str) else None
-    if names is None:
+    axes, r1 = lookup(metrics, "solver.axes"), lookup(metrics, "solver.r1")
+    names = [each.key for each in COMPONENTS if each.axes is not None and each.axes == axes]
+    if not names:
         return None
     try:
         weights = [bool(r1[i][i]) for i in range(3)]
@@ -38,11 +36,4 @@ def weighted_component(metrics: Mapping[str, Any]) -> str | None:
 
 def reduction_of(metrics: Mapping[str, Any], component: str) -> float | None:
     """Return 1 - int after^2 / int before^2 of a component, None if it is not known."""
-    coriolis = _mapping(metrics.get("coriolis"))
-    reduction = _mapping(coriolis.get(component)).get("reduction")
-    # An integer would do as well, but one from a file may have any size.
-    return reduction if isinstance(reduction, float) and math.isfinite(reduction) else None
-
-
-def _mapping(value: Any) -> Mapping[str, Any]:
-    return value if isinstance(value, Mapping) else {}
+    return number(metrics, f"coriolis.{component}.reduction")

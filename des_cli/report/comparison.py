@@ -9,7 +9,8 @@ from typing import Any
 from des_cli.files.run_folder import StoredRun
 from des_cli.model.machine import JOINTS
 from des_cli.plots.standing import budget_words, status_words
-from des_cli.report.numbers import DASH, change, lookup, number, percent, plain, words
+from des_cli.report.numbers import DASH, change, percent, plain, words
+from des_cli.results.reading import lookup, number
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,41 +1,15 @@
 """Numbers of ``metrics.json`` as the page writes them.
 
-What the page is given may be of an older or newer version, or tampered with:
-a number that is missing, or is none, is shown as a dash and never an error.
+A number that is missing, or is none, is shown as a dash and never an error; see
+``results.reading``.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from typing import Any
 
 DASH = "–"
 NO_BREAK = "\u00a0"
-
-
-def lookup(content: Mapping[str, Any], path: str) -> Any:
-    """Return what stands at a dotted path, or None.
-
-    >>> lookup({"solver": {"cost": 0.25}}, "solver.cost")
-    0.25
-    """
-    value: Any = content
-    for key in path.split("."):
-        value = value.get(key) if isinstance(value, Mapping) else None
-    return value
-
-
-def number(content: Mapping[str, Any], path: str) -> float | None:
-    """Return the finite number at a dotted path, or None."""
-    value = lookup(content, path)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    try:
-        value = float(value)
-    except OverflowError:
-        return None
-    return value if math.isfinite(value) else None
 
 
 def percent(value: float | None) -> str:

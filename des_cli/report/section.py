@@ -18,13 +18,12 @@ from des_cli.report.numbers import (
     NO_BREAK,
     change,
     fixed,
-    lookup,
-    number,
     percent,
     plain,
     words,
 )
 from des_cli.report.summary import COMPONENTS, summary_sentences
+from des_cli.results.reading import lookup, number
 
 # Rounding of the solver's last step is no violation.
 _ROUNDING = 1e-9

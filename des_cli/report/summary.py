@@ -8,7 +8,8 @@ from typing import Any
 from des_cli.plots.standing import budget_words, change_words
 from des_cli.plots.weighted import weighted_component
 from des_cli.report.comparison import limits_cell
-from des_cli.report.numbers import lookup, number, percent, plain, words
+from des_cli.report.numbers import percent, plain, words
+from des_cli.results.reading import lookup, number
 
 COMPONENTS: Mapping[str, str] = {
     "bb3": "BB3",

@@ -28,7 +28,8 @@ def test_default_is_a_run_folder_named_after_the_profile(invoke, small: str, tmp
     folder = tmp_path / "runs" / "small"
     assert {path.name for path in folder.iterdir()} == RUN_FILES | {"plots"}
     assert list((folder / "plots").glob("*.png"))
-    assert "small: converged in" in result.stderr
+    assert result.stderr.startswith("small: ")
+    assert "converged in" in result.stderr
     assert "runs/small" in result.stderr
     assert csv_rows((folder / "commands.csv").read_text()).shape == (21, 4)
 
@@ -38,7 +39,7 @@ def test_summary_names_gain_and_cost(invoke, small: str, tmp_path) -> None:
     metrics = metrics_of(tmp_path / "runs" / "small")
     gained = 100 * metrics["coriolis"]["bb3"]["reduction"]
     assert f"BB3 {gained:.1f} % less" in result.stderr
-    for label in ("Coriolis", "deviation", "felt", "compare", "limits", "written"):
+    for label in ("cross-coupling", "turning", "seat G", "ends", "study", "limits", "written"):
         assert f"\n  {label}" in result.stderr
 
 
@@ -59,7 +60,7 @@ def test_a_table_on_stdout_and_words_on_stderr(invoke, small: str, tmp_path) -> 
     assert rows.shape == (21, 4)
     assert rows[0, 0] == 0
     assert rows[-1, 0] == 1
-    assert "small: converged" in result.stderr
+    assert "converged in" in result.stderr
     assert {path.name for path in tmp_path.iterdir()} == {small}
 
 
@@ -198,7 +199,7 @@ def test_a_budget_replaces_the_weights_of_the_profile(invoke, small: str, tmp_pa
     assert metrics["solver"]["budget"] == {"seat_g_rms_error_g": 0.01}
     assert metrics["solver"]["limits"] == "enforce"
     assert 0.009 < metrics["fidelity"]["seat_g_rms_error_g"] <= 0.01
-    assert "budget      seat_g_rms_error_g at most 0.01, is 0.00" in result.stderr
+    assert "budgets        G error 0.00" in result.stderr
 
 
 def test_the_tolerance_of_zero(invoke, small: str, tmp_path) -> None:
@@ -376,7 +377,7 @@ def test_keep_going_runs_the_others(invoke, write_profile, tmp_path, jobs: str) 
     args = [path.name for path in files]
     result = invoke("reduce", *args, "--no-plots", "--keep-going", "--jobs", jobs)
     assert result.exit_code == 1
-    lines = result.stderr.splitlines()
+    lines = [line for line in result.stderr.splitlines() if not line.startswith(" ")]
     assert [line.split()[0].partition(":")[0] for line in lines[:3]] == [
         "first",
         "bad.yaml",

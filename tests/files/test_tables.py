@@ -7,6 +7,7 @@ import math
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -30,7 +31,9 @@ from des_cli.model.run import Run
 MakeRun = Callable[..., Run]
 
 JOINT_COLUMNS = [
-    f"{joint}_{unit}" for joint in ("arm", "fork", "cab") for unit in ("rad", "rad_s", "rad_s2")
+    f"{joint}_{unit}"
+    for joint in ("arm", "fork", "cab")
+    for unit in ("rad", "rad_s", "rad_s2", "rad_s3")
 ]
 VECTOR_COLUMNS = [
     "coriolis_ab3_before_rad_s2",
@@ -51,6 +54,18 @@ VECTOR_COLUMNS = [
     "seat_gy_after_g",
     "seat_gz_before_g",
     "seat_gz_after_g",
+    "seat_p_before_rad_s",
+    "seat_p_after_rad_s",
+    "seat_q_before_rad_s",
+    "seat_q_after_rad_s",
+    "seat_r_before_rad_s",
+    "seat_r_after_rad_s",
+    "seat_angular_acceleration_x_before_rad_s2",
+    "seat_angular_acceleration_x_after_rad_s2",
+    "seat_angular_acceleration_y_before_rad_s2",
+    "seat_angular_acceleration_y_after_rad_s2",
+    "seat_angular_acceleration_z_before_rad_s2",
+    "seat_angular_acceleration_z_after_rad_s2",
 ]
 SPLIT_COLUMNS = [
     f"seat_{part}_{axis}_{when}_g"
@@ -182,7 +197,19 @@ def test_trajectory_columns_hold_what_their_names_say(synthetic_run: MakeRun) ->
         assert acceleration[0] == interval[0]
         assert acceleration[-1] == interval[-1]
         np.testing.assert_allclose(acceleration[1:-1], (interval[:-1] + interval[1:]) / 2)
+        jerk, change = columns[f"modified_{joint}_rad_s3"], np.diff(modified.acceleration[:, i])
+        steps = np.abs(modified.rate_step[:, i]) > 1e-9
+        np.testing.assert_allclose(jerk[1:-1], np.where(steps, 0.0, change / 0.1), rtol=1e-9)
+        assert steps.any() == (joint == "cab")
+        assert (jerk[0], jerk[-1]) == (jerk[1], jerk[-2])
     for when, response in (("before", run.before), ("after", run.after)):
+        for i, axis in enumerate("pqr"):
+            rate = mean_of_sides(response.seat_rate)[:, i]
+            np.testing.assert_array_equal(columns[f"seat_{axis}_{when}_rad_s"], rate)
+        for i, axis in enumerate("xyz"):
+            name = f"seat_angular_acceleration_{axis}_{when}_rad_s2"
+            total = mean_of_sides(response.seat_angular_acceleration)[:, i]
+            np.testing.assert_array_equal(columns[name], total)
         for i, name in enumerate(("ab3", "bb3", "cb3")):
             expected = mean_of_sides(response.coriolis_report)[:, i]
             np.testing.assert_array_equal(columns[f"coriolis_{name}_{when}_rad_s2"], expected)
@@ -194,6 +221,12 @@ def test_trajectory_columns_hold_what_their_names_say(synthetic_run: MakeRun) ->
             for k, part in enumerate(("tangential", "centripetal", "coriolis")):
                 share = mean_of_sides(response.seat_parts)[:, k, i]
                 np.testing.assert_array_equal(columns[f"seat_{part}_{axis}_{when}_g"], share)
+
+
+def test_a_motion_without_factors_has_no_columns_for_them(synthetic_run: MakeRun) -> None:
+    run = synthetic_run(11)
+    free = replace(run, solution=replace(run.solution, control=np.empty((11, 0))))
+    assert set(trajectory_columns(run)) - set(trajectory_columns(free)) == {"p"}
 
 
 def test_a_motion_of_one_interval_has_a_trajectory(synthetic_run: MakeRun) -> None:

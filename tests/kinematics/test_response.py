@@ -2,13 +2,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from des_cli.files.load import load_profile
 from des_cli.kinematics.chain import seat_rotation
 from des_cli.kinematics.coriolis import coriolis
+from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond
 from des_cli.kinematics.seat import pilot_g
 from des_cli.model.machine import Machine, Seat
 from des_cli.model.machines import DES
-from des_cli.model.motion import Motion
+from des_cli.model.motion import Motion, integrate_sides
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
 
@@ -36,7 +38,8 @@ def test_reference_states(state, same):
 def test_both_sides_agree_where_nothing_steps(case, rng):
     motion = smooth_motion(*rng.uniform(-1.0, 1.0, (3, 3)), np.array([0.0, 0.2, 0.5, 0.6]))
     response = respond(case.machine, case.seat, motion)
-    for name in ("coriolis_report", "coriolis_seat", "seat_rate", "seat_parts", "seat_g"):
+    names = ("coriolis_report", "coriolis_seat", "seat_rate", "seat_angular_acceleration")
+    for name in (*names, "seat_parts", "seat_g"):
         sides = getattr(response, name)
         assert sides.shape[:2] == (3, 2)
         np.testing.assert_allclose(sides[:-1, 1], sides[1:, 0], rtol=0, atol=1e-12, err_msg=name)
@@ -65,7 +68,8 @@ def test_seat_quantities_do_not_depend_on_the_azimuth(rng):
     )
     seat = Seat(0.8, 0.3)
     here, there = respond(DES, seat, motion), respond(DES, seat, turned)
-    for name in ("coriolis_seat", "seat_rate", "seat_parts", "seat_g"):
+    names = ("coriolis_seat", "seat_rate", "seat_angular_acceleration", "seat_parts", "seat_g")
+    for name in names:
         np.testing.assert_allclose(getattr(there, name), getattr(here, name), rtol=0, atol=1e-13)
     assert np.abs(there.coriolis_report - here.coriolis_report).max() > 0.01
 
@@ -80,6 +84,43 @@ def test_seat_rate_turns_the_seat(case, rng):
     rate = respond(case.machine, case.seat, motion).seat_rate[1, 0]
     found = [skew[2, 1], skew[0, 2], skew[1, 0]]
     np.testing.assert_allclose(rate, found, rtol=0, atol=1e-6)
+
+
+def test_the_total_angular_acceleration_is_the_derivative_of_the_seat_rate(case, rng):
+    q, qd, qdd = rng.uniform(-1.0, 1.0, (3, 3))
+    h = 1e-4
+    response = respond(
+        case.machine, case.seat, smooth_motion(q, qd, qdd, np.array([0.0, h, 2 * h]))
+    )
+    rate = np.append(response.seat_rate[:, 0], response.seat_rate[-1:, 1], axis=0)
+    found = response.seat_angular_acceleration[1, 0]
+    np.testing.assert_allclose(found, (rate[2] - rate[0]) / (2 * h), rtol=0, atol=1e-7)
+    assert np.abs(found - response.coriolis_seat[1, 0]).max() > 0.01
+
+
+def test_the_total_angular_acceleration_at_the_studys_seat(rng):
+    """J_b theta'' + c written out for seat yaw 90 degrees, pitch 0."""
+    q, qd, qdd = rng.uniform(-1.0, 1.0, (3, 3))
+    response = respond(DES, Seat(), smooth_motion(q, qd, qdd, np.array([0.0, 0.1])))
+    (s2, s3), (c2, c3) = np.sin(q[1:]), np.cos(q[1:])
+    arm, fork, cab = qd
+    jacobian = np.array([[-s2, 0.0, -1.0], [-c2 * s3, c3, 0.0], [c2 * c3, s3, 0.0]])
+    cross = [
+        -c2 * fork * arm,
+        (s2 * s3 * fork - c2 * c3 * cab) * arm - s3 * cab * fork,
+        (-s2 * c3 * fork - c2 * s3 * cab) * arm + c3 * cab * fork,
+    ]
+    total = response.seat_angular_acceleration[0, 0]
+    np.testing.assert_allclose(total, jacobian @ qdd + cross, rtol=0, atol=1e-14)
+
+
+def test_the_cobra_turns_the_pilot_as_an_independent_study_found():
+    """0.462 rad/s^2 rms and 0.539 at most (CasADi, 4-point Gauss), two-sided at t = 5 s."""
+    motion = make_desired(load_profile("cobra")).motion
+    size = np.linalg.norm(respond(DES, Seat(), motion).seat_angular_acceleration, axis=-1)
+    rms = np.sqrt(integrate_sides(motion.step, size**2) / motion.step.sum())
+    assert abs(rms - 0.462) < 5e-4
+    assert abs(size.max() - 0.539) < 5e-4
 
 
 def test_local_gravity_is_the_machines():

@@ -1,0 +1,1 @@
+"""What a reduction gained and what it cost, measured and put into words."""

@@ -1,0 +1,99 @@
+"""How hard and how smoothly a motion drives the joints."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import JOINTS, Machine
+from des_cli.model.motion import Motion
+from des_cli.model.run import Violation
+from des_cli.reduction.limits import STEP_TOLERANCE, measure_peaks
+
+AT_LIMIT = 0.99
+"""Share of the acceleration limit from which a joint counts as being at it."""
+
+IDLE = 0.01
+"""Share of the acceleration limit below which an acceleration has no sign: what is left of
+it there is rounding, or a joint that coasts."""
+
+
+def joint_metrics(
+    machine: Machine, motion: Motion, which: str, violations: tuple[Violation, ...]
+) -> dict[str, Any]:
+    """Return peaks beside limits, for each joint.
+
+    Parameters
+    ----------
+    machine : Machine
+    motion : Motion
+    which : {"desired", "modified"}
+        How the violations call the motion.
+    violations : tuple of Violation
+
+    Returns
+    -------
+    dict
+        By joint; a limit that the machine does not have is None.
+    """
+    peaks = measure_peaks(motion)
+    jerk = np.max(np.abs(jerk_at_samples(motion)), axis=0)
+    limit = np.array([joint.acceleration for joint in machine.limits])
+    full = np.abs(motion.acceleration) >= AT_LIMIT * limit
+    share = motion.step @ full / motion.step.sum()
+    changes = sign_changes(motion.acceleration, IDLE * limit)
+    broken = {v.joint for v in violations if v.motion == which}
+    return {
+        joint: {
+            "rate_peak_rad_s": float(peaks.rate[j]),
+            "rate_limit_rad_s": finite(machine.limits[j].rate),
+            "acceleration_peak_rad_s2": float(peaks.acceleration[j]),
+            "acceleration_limit_rad_s2": finite(machine.limits[j].acceleration),
+            "jerk_peak_rad_s3": float(jerk[j]),
+            "jerk_limit_rad_s3": finite(machine.limits[j].jerk),
+            "rate_step_rad_s": float(peaks.rate_step[j]),
+            "at_acceleration_limit": float(share[j]),
+            "acceleration_sign_changes": int(changes[j]),
+            "ok": joint not in broken,
+        }
+        for j, joint in enumerate(JOINTS)
+    }
+
+
+def jerk_at_samples(motion: Motion) -> Floats:
+    """Return the jerk at every sample, (n, 3) [rad/s^3].
+
+    The change of the acceleration from the interval before a sample to the one
+    after it, over the time between their middles. It is zero where the rate steps,
+    for there it would mean nothing; at the ends it is that of the next sample.
+    """
+    jerk = np.zeros_like(motion.angle)
+    if len(motion.t) > 2:
+        jerk[1:-1] = np.where(np.abs(motion.rate_step) > STEP_TOLERANCE, 0.0, motion.jerk)
+        jerk[0], jerk[-1] = jerk[1], jerk[-2]
+    return jerk
+
+
+def sign_changes(acceleration: Floats, least: Floats) -> list[int]:
+    """Count how often each joint's acceleration changes its sign.
+
+    Parameters
+    ----------
+    acceleration : (m, 3) array
+        [rad/s^2]
+    least : (3,) array
+        Intervals at or below this magnitude have no sign and are passed over.
+    """
+    counts = []
+    for values, floor in zip(acceleration.T, least, strict=True):
+        signs = np.sign(values[np.abs(values) > (floor if np.isfinite(floor) else 0.0)])
+        counts.append(int(np.sum(signs[1:] != signs[:-1])))
+    return counts
+
+
+def finite(limit: float) -> float | None:
+    """Return a limit, None where there is none: JSON has no infinity."""
+    return limit if math.isfinite(limit) else None

@@ -1,0 +1,41 @@
+"""The onset of G is that of its curve, whatever the grid."""
+
+import numpy as np
+import pytest
+
+from des_cli.kinematics.onset import WINDOW, largest_onset
+
+
+def sides_of(values):
+    """Values on sides of a curve without jumps, (n - 1, 2, 1)."""
+    return np.stack([values[:-1], values[1:]], axis=1)[..., None]
+
+
+@pytest.mark.parametrize("intervals", [40, 400, 4000])
+def test_a_slow_curve_has_its_slope(intervals):
+    t = np.linspace(0.0, 4.0, intervals + 1)
+    (found,) = largest_onset(t, sides_of(np.sin(t)))
+    # the mean slope of a sine over the window, where it is steepest
+    assert found == pytest.approx(2.0 * np.sin(WINDOW / 2) / WINDOW, rel=1e-3)
+
+
+@pytest.mark.parametrize("intervals", [30, 100, 1000, 10000])
+def test_a_jump_has_the_same_onset_on_every_grid(intervals):
+    t = np.linspace(0.0, 10.0, intervals + 1)
+    sides = np.where(t[:-1, None] < 5.0 - 1e-9, 0.0, 0.3) * np.ones((1, 2))
+    (found,) = largest_onset(t, sides[..., None])
+    assert found == pytest.approx(0.3 / WINDOW, rel=1e-6)
+
+
+def test_uneven_grids_and_samples_further_apart_than_the_window():
+    t = np.array([0.0, 1.0, 1.03, 1.06, 3.0])
+    values = np.array([0.0, 0.0, 0.6, 0.0, 1.0])
+    fine = np.linspace(0.0, 3.0, 30001)
+    curve = np.interp(fine, t, values)
+    (found,) = largest_onset(t, sides_of(values))
+    assert found == pytest.approx(np.abs(curve[1000:] - curve[:-1000]).max() / WINDOW, rel=1e-4)
+
+
+def test_a_short_maneuver_is_one_window():
+    (found,) = largest_onset(np.array([0.0, 0.05]), sides_of(np.array([1.0, 1.2])))
+    assert found == pytest.approx(0.2 / 0.05)
