@@ -44,6 +44,27 @@ def test_a_budget_and_weights_replace_each_other() -> None:
     assert changed(budget, *weights)["reduction"] == {"r2": 0.2, "tracking": 3}
 
 
+def test_a_budget_joins_those_on_other_metrics() -> None:
+    one = "reduction.budget.seat_g_rms_error_g=0.1"
+    other = "reduction.budget.seat_rate_deviation_relative=0.2"
+    both = {"seat_g_rms_error_g": 0.1, "seat_rate_deviation_relative": 0.2}
+    assert changed(one, other)["reduction"] == {"budget": both}
+    assert changed(one, other, f"{one}5")["reduction"]["budget"]["seat_g_rms_error_g"] == 0.15
+    assert changed("reduction.r2=1", one)["reduction"] == {"budget": {"seat_g_rms_error_g": 0.1}}
+    bare = {"joint_deviation_relative": 0.05, "seat_g_rms_error_g": 0.1}
+    assert changed("reduction.budget=0.05", one)["reduction"] == {"budget": bare}
+
+
+def test_a_limit_replaces_the_word_that_lifts_it_and_the_other_way_round() -> None:
+    base, fork = "machine={base: des, limits: {fork: {}}}", "machine.limits.fork"
+    number, word = f"{fork}.jerk_rad_s3=3", f"{fork}.jerk=unlimited"
+    assert changed(base, number, word)["machine"]["limits"]["fork"] == {"jerk": "unlimited"}
+    assert changed(base, word, number)["machine"]["limits"]["fork"] == {"jerk_rad_s3": 3}
+    machine = load_profile("rolling_spin", settings=[base, number, "machine.occupant.gy_g=[-1, 1]"])
+    assert machine.machine.limits[1].jerk == 3.0
+    assert machine.machine.occupant.gy == (-1.0, 1.0)
+
+
 def test_lists_are_indexed_and_other_members_stay() -> None:
     found = changed("joints.arm_rpm[1].to_s=4", "joints.arm_rpm[0]={value: 7}")
     assert found["joints"]["arm_rpm"] == [{"value": 7}, {"from_s": 5, "to_s": 4, "value": 2}]
