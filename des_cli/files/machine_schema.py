@@ -13,6 +13,9 @@ from des_cli.files.sections import OMITTED, Measure, Number, Section, fault, mea
 from des_cli.files.wording import shown
 from des_cli.model.machine import Variable
 
+DEFAULT_MACHINE = "des"
+"""What a profile that names no machine is for."""
+
 VARIABLES: tuple[Variable, ...] = ("arm", "fork", "cab", "seat_yaw", "seat_pitch")
 
 _ONE_TIME = np.zeros(1)

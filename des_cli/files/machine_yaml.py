@@ -61,6 +61,11 @@ def parse_machine(text: str, label: str) -> Machine:
     return machine
 
 
+def is_machine_file(choice: str) -> bool:
+    """Tell a file's path from the name of a built-in machine."""
+    return choice.endswith((".yaml", ".yml")) or "/" in choice or "\\" in choice
+
+
 def named_machine(name: str, path: Sequence[Step], findings: Findings) -> Machine | None:
     """Return a built-in machine, or None after saying that there is none."""
     machine = MACHINES.get(name)

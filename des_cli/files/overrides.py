@@ -6,6 +6,8 @@ import re
 from collections.abc import Sequence
 
 from des_cli.errors import Problem, ProfileError
+from des_cli.files.machine_schema import DEFAULT_MACHINE
+from des_cli.files.machine_yaml import is_machine_file
 from des_cli.files.wording import plain, shown
 from des_cli.files.yaml_nodes import Node, Step, parse_yaml, path_text
 from des_cli.model.metric import STUDY_METRIC
@@ -28,7 +30,8 @@ def apply_settings(root: Node, settings: Sequence[str]) -> list[Problem]:
     A key replaces the one that gives the same quantity in another unit, or without
     one, so ``initial.arm_deg=3`` also works where the profile says ``arm_rad``. A budget
     takes the weights away, and they take it away; ``reduction.budget.METRIC=0.1`` joins
-    the budgets that the profile has on other metrics.
+    the budgets that the profile has on other metrics, and ``machine.limits...`` changes
+    the built-in machine that the profile names.
     Whether the keys exist is for the schema to say, which names the setting
     as the place.
 
@@ -107,6 +110,8 @@ def _descend(node: Node, step: Step, path: Sequence[Step], label: str) -> Node:
     _check_container(node, step, path, label)
     if isinstance(node.value, dict) and list(path) == ["reduction", _BUDGET]:
         _make_budgets_a_mapping(node.value)
+    if isinstance(node.value, dict) and list(path) == ["machine"]:
+        _make_machine_a_mapping(node.value, label)
     if isinstance(node.value, dict) and step not in node.value:
         # The schema, not this function, knows which keys exist.
         node.value[str(step)] = Node(label, {})
@@ -123,6 +128,13 @@ def _make_budgets_a_mapping(reduction: dict[str, Node]) -> None:
     bare = reduction.get(_BUDGET)
     if bare is not None and type(bare.value) in (int, float):
         reduction[_BUDGET] = Node(bare.place, {STUDY_METRIC: bare}, {STUDY_METRIC: bare.place})
+
+
+def _make_machine_a_mapping(document: dict[str, Node], label: str) -> None:
+    """Make a built-in machine, or the default one, the base of what is changed in it."""
+    named = document.get("machine", Node(label, DEFAULT_MACHINE))
+    if isinstance(named.value, str) and not is_machine_file(named.value):
+        document["machine"] = Node(named.place, {"base": named}, {"base": named.place})
 
 
 def _put(node: Node, path: Sequence[Step], value: Node, label: str) -> None:

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
 from des_cli.files.expression import Expression, ExpressionError, parse_expression
-from des_cli.files.machine_schema import MachineSection
+from des_cli.files.machine_schema import DEFAULT_MACHINE, MachineSection
 from des_cli.files.sections import OMITTED, Measure, Number, Section, fault, measured
 from des_cli.files.wording import shown
 from des_cli.model.machine import Joint
@@ -274,7 +274,7 @@ class ProfileSettings(Section):
     """What a profile says beside its commands."""
 
     name: Annotated[str, Field(strict=True), AfterValidator(_check_name)] = OMITTED
-    machine: MachineChoice = "des"
+    machine: MachineChoice = DEFAULT_MACHINE
     seat: Seat = OMITTED  # type: ignore[valid-type]
     initial: Initial = OMITTED  # type: ignore[valid-type]
     reduction: ReductionSection = OMITTED  # type: ignore[valid-type]

@@ -55,6 +55,17 @@ def test_a_budget_joins_those_on_other_metrics() -> None:
     assert changed("reduction.budget=0.05", one)["reduction"] == {"budget": bare}
 
 
+def test_a_setting_changes_the_built_in_machine_that_the_profile_names() -> None:
+    setting = "machine.limits.fork.jerk_rad_s3=3"
+    assert changed(setting)["machine"] == {"base": "des", "limits": {"fork": {"jerk_rad_s3": 3}}}
+    named = changed("machine=johnsville", setting, "machine.occupant.gy_g=[-1, 1]")["machine"]
+    assert (named["base"], named["occupant"]) == ("johnsville", {"gy_g": [-1, 1]})
+    machine = load_profile("rolling_spin", settings=[setting]).machine
+    assert [limit.jerk for limit in machine.limits] == [1.26, 3.0, 10.0]
+    with pytest.raises(ProfileError, match=r"machine is a single value \('own.yaml'\)"):
+        load_profile("rolling_spin", settings=["machine=own.yaml", setting])
+
+
 def test_a_limit_replaces_the_word_that_lifts_it_and_the_other_way_round() -> None:
     base, fork = "machine={base: des, limits: {fork: {}}}", "machine.limits.fork"
     number, word = f"{fork}.jerk_rad_s3=3", f"{fork}.jerk=unlimited"
@@ -104,7 +115,7 @@ def test_the_last_setting_wins() -> None:
         ("name=!!str 3", "tag"),
         ("joints.arm_rpm[2].to_s=3", "joints.arm_rpm has 2 items, counted from 0"),
         ("joints.arm_rpm.to_s=3", "joints.arm_rpm is a list: say which item, [0], so it has no"),
-        ("machine.base=des", "machine is a single value ('des'), so it has no base"),
+        ("name.base=des", "name is a single value ('cobra'), so it has no base"),
         ("seat[0]=3", "seat is not a list"),
         ("seat.\x1b[1m=3", "is not a path"),
     ],
