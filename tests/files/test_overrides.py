@@ -115,7 +115,7 @@ def test_the_last_setting_wins() -> None:
         ("name=!!str 3", "tag"),
         ("joints.arm_rpm[2].to_s=3", "joints.arm_rpm has 2 items, counted from 0"),
         ("joints.arm_rpm.to_s=3", "joints.arm_rpm is a list: say which item, [0], so it has no"),
-        ("name.base=des", "name is a single value ('cobra'), so it has no base"),
+        ("initial.arm_rad.x=3", "initial.arm_rad is a single value (1), so it has no x"),
         ("seat[0]=3", "seat is not a list"),
         ("seat.\x1b[1m=3", "is not a path"),
     ],
