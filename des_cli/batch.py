@@ -148,7 +148,7 @@ def _run_job(job: Job, on_iteration: Callable[[Iteration], None] | None) -> JobR
 
 def _require_consistent(profile: Profile) -> None:
     """Refuse contradictions also where nothing will be solved."""
-    from des_cli.pipeline import require_consistent
+    from des_cli.reduction.consistency import require_consistent
 
     require_consistent(profile.reduction, profile.name)
 

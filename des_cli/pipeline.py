@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
-from des_cli.errors import Problem as Finding
-from des_cli.errors import UsageError
 from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond
 from des_cli.metrics import Measured, measure
-from des_cli.model.profile import Profile, Reduction
+from des_cli.model.profile import Profile
 from des_cli.model.run import Run
 from des_cli.model.solution import Iteration
 from des_cli.notices import find_notices
 from des_cli.reduction.baseline import compare
+from des_cli.reduction.consistency import require_consistent
 from des_cli.reduction.limits import find_violations
 from des_cli.reduction.problem import pose_problem
 from des_cli.reduction.solve import make_executable, not_attempted, solve
@@ -77,52 +74,3 @@ def reduce_profile(
         metrics=metrics,
         notices=tuple(metrics["notices"]),
     )
-
-
-def require_consistent(wanted: Reduction, name: str = "") -> None:
-    """Refuse what a method cannot do.
-
-    Parameters
-    ----------
-    wanted : Reduction
-    name : str, optional
-        Of the profile that asks for it.
-
-    Raises
-    ------
-    UsageError
-        With everything that excludes something else.
-    """
-    sweep = wanted.algorithm == "report-sweep"
-    findings = [
-        what
-        for wrong, what in (
-            (
-                sweep and wanted.limits == "enforce",
-                "report-sweep cannot enforce limits: add --limits warn (or check)",
-            ),
-            (sweep and wanted.method == "zero", "report-sweep has no method zero"),
-            (
-                wanted.method == "zero" and bool(wanted.budget),
-                "method zero keeps a tolerance, not a budget: leave one of them out",
-            ),
-            (
-                sweep and bool(wanted.budget),
-                "report-sweep needs the weight r2 and cannot keep a budget: add --r2",
-            ),
-            (
-                sweep and wanted.jacobian == "adapted",
-                "report-sweep takes the Jacobian on the desired motion: add --jacobian desired",
-            ),
-            (
-                bool(wanted.hold) and wanted.control == "scalar",
-                "hold needs control: per-joint, a scalar factor moves every joint",
-            ),
-            (len(wanted.hold) == 3, "hold leaves no joint to change"),
-            (not np.any(wanted.r1), "r1 weighs no Coriolis component"),
-        )
-        if wrong
-    ]
-    if findings:
-        where = f"{name}: reduction" if name else "reduction"
-        raise UsageError([Finding(where, what) for what in findings])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from des_cli.batch import load_job
@@ -71,7 +71,7 @@ def check_points(jobs: Sequence[PointJob]) -> Profile:
     DesError
         The first kind of error that there is, with all problems of its kind.
     """
-    from des_cli.pipeline import require_consistent
+    from des_cli.reduction.consistency import require_consistent
 
     profile: Profile | None = None
     errors: list[DesError] = []
@@ -138,7 +138,9 @@ def run_point(
         profile = load_job(job.job)
         if job.baselines:
             return PointResult(tuple(baseline_points(profile, job.weights)))
-        return PointResult((trade_point(profile, note),), tuple(log))
+        point = trade_point(profile, note)
+        # of several budgets, only the job knows which one is swept
+        return PointResult((replace(point, swept=job.swept, value=job.value),), tuple(log))
     except Exception as error:
         return _failed(job, error)
 

@@ -25,11 +25,11 @@ class Unit:
     suffix : str
         As it stands at the end of a name, without the leading underscore.
     quantity : str
-        What it measures: ``time``, ``angle``, ``rate``, ``acceleration`` (the
-        latter two angular), ``length`` or ``specific_force``.
+        What it measures: ``time``, ``angle``, ``rate``, ``acceleration``, ``jerk``
+        (the latter three angular), ``length`` or ``specific_force``.
     to_si : float
         A value in this unit times ``to_si`` is the value in SI (s, rad, rad/s,
-        rad/s^2, m, m/s^2).
+        rad/s^2, rad/s^3, m, m/s^2).
     """
 
     suffix: str
@@ -50,6 +50,8 @@ UNITS: tuple[Unit, ...] = (
     Unit("rpm", "rate", _TURN / 60.0),
     Unit("rad_s2", "acceleration", 1.0),
     Unit("deg_s2", "acceleration", math.pi / 180.0),
+    Unit("rad_s3", "jerk", 1.0),
+    Unit("deg_s3", "jerk", math.pi / 180.0),
     Unit("m", "length", 1.0),
     Unit("ft", "length", FOOT_M),
     Unit("m_s2", "specific_force", 1.0),

@@ -2,30 +2,37 @@
 
 import itertools
 import json
+import math
 import re
 from pathlib import Path
 from typing import get_args
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 from des_cli.errors import ExitCode
 from des_cli.files.expression import FUNCTIONS
 from des_cli.files.load import load_profile
+from des_cli.files.machine_schema import JointLimitsSection, MachineSection, OccupantSection
+from des_cli.files.machine_yaml import parse_machine
 from des_cli.files.tables import trajectory_names
+from des_cli.model.machines import DES
 from des_cli.model.metric import Budget, MetricKey
+from des_cli.model.motion import Motion
 from des_cli.model.profile import Reduction
 from des_cli.pipeline import reduce_profile
-from des_cli.units import UNITS
+from des_cli.units import UNITS, split_unit, suffixes
 
 PAGE = Path(__file__).parents[1] / "docs" / "formats.md"
 TEXT = PAGE.read_text(encoding="utf-8")
 
 
 def section(title: str) -> str:
-    match = re.search(rf"^(#+) {re.escape(title)}\n(.*?)(?=^\1 |\Z)", TEXT, re.M | re.S)
+    match = re.search(rf"^(#+) {re.escape(title)}\n", TEXT, re.M)
     assert match, title
-    return match[2]
+    same_or_higher = rf"^#{{1,{len(match[1])}}} "
+    return re.split(same_or_higher, TEXT[match.end() :], maxsplit=1, flags=re.M)[0]
 
 
 def named(text: str) -> set[str]:
@@ -61,21 +68,52 @@ def test_trajectory_columns() -> None:
 def test_keys_of_a_reduction() -> None:
     rows = re.findall(r"^\| `(\w+)` \| .+ \| (.+) \|$", section("Reduction"), re.M)
     default = Reduction()
+    rows = [(split_unit(key)[0], value.strip("`")) for key, value in rows]
     assert {key for key, _ in rows} == set(Reduction.__dataclass_fields__)
     for key, value in rows:
-        if isinstance(getattr(default, key), (str, int, float)):
-            assert value == f"`{getattr(default, key)}`"
-    assert default.budget == (
-        Budget("joint_deviation_relative", float(dict(rows)["budget"].strip("`"))),
-    )
+        own = getattr(default, key)
+        if isinstance(own, (str, int, float)):
+            assert type(own)(value) == own
+    budgets = YAML(typ="safe").load(dict(rows)["budget"])
+    assert default.budget == tuple(Budget(metric, most) for metric, most in budgets.items())
+    assert [key for key, value in rows if value == "none"] == ["optimise", "hold"]
+    assert not default.optimise
+    assert not default.hold
     weights = {"r1": default.r1.diagonal(), "r2": default.r2[0], "tracking": default.tracking[0]}
     for key, weight in weights.items():
-        np.testing.assert_array_equal(json.loads(dict(rows)[key].strip("`")), weight)
+        np.testing.assert_array_equal(json.loads(dict(rows)[key]), weight)
 
 
 def test_metrics_of_a_budget() -> None:
-    text = section("Reduction").partition("A budget is on one metric")[2].partition(". ")[0]
+    text = section("Reduction").partition("Budgets are on any metrics")[2].partition(". ")[0]
     assert named(text.partition(":")[2]) == set(get_args(MetricKey))
+
+
+def test_the_machine_of_the_page_is_read_and_its_keys_are_those_of_the_schema() -> None:
+    text = section("Machines")
+    shown = re.search(r"```yaml\n(.*?)```", text, re.S)
+    assert shown
+    machine = parse_machine(shown[1], "formats.md")
+    assert [limit.jerk for limit in machine.limits] == [1.0, DES.limits[1].jerk, math.inf]
+    assert machine.occupant.bounded
+    rows = re.findall(r"^\| (.+?) \| (.+) \|$", text, re.M)
+    keys = {split_unit(key)[0] for cell, _ in rows for key in named(cell)}
+    known = {split_unit(key)[0] for key in MachineSection.model_fields}
+    assert keys == known
+    bounds = named(next(words for cell, words in rows if cell == "`occupant`"))
+    assert {key for key in OccupantSection.model_fields if not key.endswith("deg_s2")} <= bounds
+    limits = named(next(words for cell, words in rows if cell == "`limits`"))
+    assert {f"{m.stem}_{suffixes(m.quantity)[0]}" for m in JointLimitsSection.measures} <= limits
+
+
+def test_the_jerk_of_a_rounded_table_is_at_most_what_the_page_says() -> None:
+    # errors of half a digit with the signs that add up in the estimate
+    digit, step = 1e-3, 0.01
+    position = 0.5 * digit * np.array([0, -1, 1, 0, -1, 1, 0, 0, 0, 0])
+    rate = np.gradient(position, step)
+    table = np.stack([0 * rate, rate, 0 * rate], axis=1)
+    motion = Motion(step * np.arange(10), 0 * table, table[:-1], table[1:])
+    assert np.max(np.abs(motion.jerk)) == pytest.approx(1.5 * digit / step**3)
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -107,7 +107,11 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
         click.Choice(["optimum", "report-sweep"]),
         "The true optimum, or the study's single sweep.",
     ),
-    ("control", click.Choice(["scalar", "per-joint"]), "One factor for all joints, or one each."),
+    (
+        "control",
+        click.Choice(["free", "scalar", "per-joint"]),
+        "Free joints, or the study's factors: one for all joints, or one each.",
+    ),
     (
         "axes",
         click.Choice(["report", "seat"]),
@@ -128,13 +132,32 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
     ),
     (
         "budget",
-        "MOST",
-        "The most Coriolis reduction for at most this joint_deviation_relative, or METRIC=MOST "
-        "of another fidelity metric, inside the machine's limits.",
+        "METRIC=MOST",
+        "The most Coriolis reduction for at most so much of a fidelity metric, inside the "
+        "machine's limits; a number alone is joint_deviation_relative.",
     ),
+    (
+        "objective",
+        click.Choice(["coriolis", "blend", "felt"]),
+        "Minimise the Coriolis, the Coriolis and a tenth of the felt error, or the felt error.",
+    ),
+    (
+        "ends",
+        click.Choice(["free", "match-start", "match-rates", "match-both"]),
+        "Keep no rates, those at the start, at both ends, or angles and rates at both ends.",
+    ),
+    (
+        "optimise",
+        click.Choice(["seat_yaw", "seat_pitch", "fork_start", "cab_start"]),
+        "Find this constant together with the motion.",
+    ),
+    ("lead_in", "SECONDS", "Ramp from rest to the start in this time."),
+    ("lead_out", "SECONDS", "Ramp from the end to rest in this time."),
     ("tolerance", "RAD_S2", "Largest Coriolis component that --method zero leaves."),
     ("iterations", click.IntRange(min=1), "Backward-forward sweeps of report-sweep."),
 )
+_REPEATABLE = ("budget", "optimise")
+_SECONDS = ("lead_in", "lead_out")
 
 
 def reduction_options(command: F) -> F:
@@ -150,7 +173,11 @@ def reduction_options_without(*keys: str) -> Callable[[F], F]:
             if key in keys:
                 continue
             typed: dict[str, Any] = {"metavar": kind} if isinstance(kind, str) else {"type": kind}
-            command = click.option(f"--{key}", key, help=text, **typed)(command)
+            if key in _REPEATABLE:
+                typed["multiple"] = True
+                text = f"{text.removesuffix('.')}; repeatable."
+            name = f"--{key.replace('_', '-')}"
+            command = click.option(name, key, help=text, **typed)(command)
         return command
 
     return add
@@ -162,25 +189,84 @@ def reduction_settings(values: Mapping[str, Any]) -> tuple[str, ...]:
     Raises
     ------
     click.UsageError
-        If a budget is given together with the weights that it stands instead of.
+        If a budget is given together with the weights that it stands instead of, or
+        twice for the same metric.
 
     >>> reduction_settings({"method": "zero", "r1": "0,2,0", "r2": None})
     ('reduction.method=zero', 'reduction.r1=[0,2,0]', 'reduction.limits=enforce')
     """
     given = {
-        key: _bracketed(values[key]) for key, _, _ in _REDUCTION if values.get(key) is not None
+        key: _bracketed(values[key])
+        for key, _, _ in _REDUCTION
+        if values.get(key) is not None and values[key] != ()
     }
     if "budget" in given:
         if weights := [f"--{key}" for key in ("r2", "tracking") if key in given]:
             raise click.UsageError(f"--budget stands instead of {' and '.join(weights)}.")
-        metric, equals, most = given["budget"].partition("=")
-        if equals:
-            given["budget"] = f"{{{metric.strip()}: {most.strip()}}}"
+        budgets = read_budgets(values["budget"])
+        given["budget"] = f"{{{', '.join(f'{name}: {most}' for name, most in budgets.items())}}}"
         # what a budget buys is meant inside the limits, unless it is said otherwise
         given.setdefault("limits", "enforce")
     if given.get("method") == "zero":
         given.setdefault("limits", "enforce")  # without limits it jumps where it can
-    return tuple(f"reduction.{key}={value}" for key, value in given.items())
+    if "optimise" in given:
+        given["optimise"] = f"[{', '.join(values['optimise'])}]"
+    units = dict.fromkeys(_SECONDS, "_s")
+    return tuple(f"reduction.{key}{units.get(key, '')}={value}" for key, value in given.items())
+
+
+def read_budgets(texts: Sequence[str]) -> dict[str, str]:
+    """Return the largest values by metric, as a profile writes them.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        ``METRIC=MOST``, or ``MOST`` of the study's measure. What a metric or a number
+        may be is the schema's business, but for a percentage of a share: ``5%``.
+
+    Raises
+    ------
+    click.UsageError
+        If a metric is there twice, or has a percentage and is no share.
+
+    >>> read_budgets(["5%", "seat_g_rms_error_g = 0.05"])
+    {'joint_deviation_relative': '0.05', 'seat_g_rms_error_g': '0.05'}
+    """
+    # model.metric itself needs no numpy, which --help must not wait for
+    from des_cli.model.metric import STUDY_METRIC
+
+    budgets: dict[str, str] = {}
+    for text in texts:
+        metric, _, most = text.rpartition("=")
+        metric = metric.strip() or STUDY_METRIC
+        if metric in budgets:
+            raise click.UsageError(f"--budget is given twice for {metric}.")
+        budgets[metric] = without_percent(metric, most.strip())
+    return budgets
+
+
+def without_percent(metric: str, most: str) -> str:
+    """Return a largest value as a plain number where it is a percentage of a share.
+
+    Raises
+    ------
+    click.UsageError
+        If the metric is no share.
+
+    >>> without_percent("seat_rate_deviation_relative", "12.5 %")
+    '0.125'
+    """
+    from des_cli.model.metric import METRICS
+
+    if not most.endswith("%"):
+        return most
+    unit = next((each.unit for each in METRICS.values() if each.key == metric), "")
+    if unit:
+        raise click.UsageError(f"{metric} is no share: give it in {unit}, not as {most!r}.")
+    try:
+        return repr(float(most.removesuffix("%")) / 100.0)
+    except ValueError:
+        return most  # the schema says what is wrong with it
 
 
 def read_stdin(sources: tuple[str, ...]) -> bytes | None:

@@ -12,6 +12,7 @@ import click
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     TABLE_FORMATS,
+    read_budgets,
     read_stdin,
     reduction_options_without,
     reduction_settings,
@@ -20,12 +21,12 @@ from des_cli.cli.options import (
 )
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.sweep_options import (
-    CONTROLS,
     DEFAULT_BUDGETS,
+    DEFAULT_CONTROLS,
     DEFAULT_METRIC,
     Budgets,
-    read_budgets,
     read_controls,
+    read_swept_budgets,
     read_weights,
 )
 from des_cli.errors import ExitCode, FileAccessError, Problem
@@ -44,15 +45,17 @@ Examples:
   des-coriolis sweep cobra
   des-coriolis sweep cobra --r2s 8,1,0.2 --plot curve.png -o curve.csv
   des-coriolis sweep my.yaml --budgets seat_g_rms_error_g=0.05,0.1,0.2 --jobs 2
+  des-coriolis sweep my.yaml --controls free --budgets seat_rate_deviation_relative=5%,10%,20% \\
+    --budget seat_g_rms_error_g=0.05
 """,
 )
 @click.argument("profile", metavar="PROFILE")
 @click.option(
     "--budgets",
     metavar="MOST,...",
-    callback=read_budgets,
-    help="Budgets of joint_deviation_relative, or METRIC=MOST,... of another fidelity metric.  "
-    "[default: 0.01,0.02,0.05,0.1]",
+    callback=read_swept_budgets,
+    help="Budgets of joint_deviation_relative, or METRIC=MOST,... of another fidelity metric; "
+    "the profile's budgets on other metrics stay.  [default: 0.01,0.02,0.05,0.1]",
 )
 @click.option(
     "--r2s",
@@ -63,13 +66,13 @@ Examples:
 @click.option(
     "--controls",
     metavar="CONTROL,...",
-    default=",".join(CONTROLS),
+    default=",".join(DEFAULT_CONTROLS),
     show_default=True,
     callback=read_controls,
-    help="A curve for each: one factor for all joints, one each, or both.",
+    help="A curve for each: free joints, one factor for all, or one each.",
 )
 @setting_options
-@reduction_options_without("method", "algorithm", "control", "budget", "tolerance", "iterations")
+@reduction_options_without("method", "algorithm", "control", "tolerance", "iterations")
 @click.option(
     "-o",
     "--out",
@@ -117,7 +120,9 @@ def sweep(
     """
     if budgets and r2s:
         raise click.UsageError("--budgets and --r2s exclude each other.")
+    swept = None if r2s else budgets or (DEFAULT_METRIC, DEFAULT_BUDGETS)
     _refuse_weights(reduction, r2s)
+    _refuse_budgets(reduction, swept)
     form = _form(out, table_format)
     if form != "text" and out in (None, STANDARD_STREAM):
         refuse_binary_on_terminal(form)
@@ -128,7 +133,7 @@ def sweep(
         columns=columns,
         stdin=read_stdin((profile,)) if profile == STANDARD_STREAM else None,
     )
-    points = _plan(source, reduction, budgets, r2s, controls)
+    points = _plan(source, reduction, swept, r2s or (), controls)
     return _run(console, points, jobs, out, form, plot, overwrite)
 
 
@@ -136,33 +141,34 @@ def _plan(
     source: Job,
     reduction: dict[str, Any],
     budgets: Budgets | None,
-    r2s: tuple[float, ...] | None,
+    r2s: tuple[float, ...],
     controls: Sequence[str],
 ) -> list[PointJob]:
-    """Return a job for each point, and one for the baselines."""
+    """Return a job for each point, over budgets or else over r2, and one for the baselines."""
     from dataclasses import replace
 
     from des_cli.sweep import PointJob
 
-    swept, values = ("r2", r2s) if r2s else budgets or (DEFAULT_METRIC, DEFAULT_BUDGETS)
+    swept, values = budgets or ("r2", r2s)
     base = reduction
-    if not r2s:
+    if budgets:
         # what a budget buys is meant inside the limits, and so is what it is compared with
         base = reduction | {"limits": reduction["limits"] or "enforce"}
 
-    def job(own: Mapping[str, Any]) -> Job:
-        return replace(source, settings=(*source.settings, *reduction_settings({**base, **own})))
+    def job(own: Mapping[str, Any], *further: str) -> Job:
+        settings = (*source.settings, *reduction_settings({**base, **own}), *further)
+        return replace(source, settings=settings)
 
     jobs = []
     for control in controls:
         for value in values:
             own: dict[str, Any] = {"method": "minimum", "algorithm": "optimum", "control": control}
-            if r2s:
-                own["r2"] = repr(value)
-            else:  # r2 is the study's then
-                own |= {"budget": f"{swept}={value!r}", "r2": None}
-            jobs.append(PointJob(job(own), cast("Control", control), swept, value))
-    return [*jobs, PointJob(job({}), weights=r2s or ())]
+            if budgets:  # r2 is the study's then
+                point = job(own | {"r2": None}, f"reduction.budget.{swept}={value!r}")
+            else:
+                point = job(own | {"r2": repr(value)})
+            jobs.append(PointJob(point, cast("Control", control), swept, value))
+    return [*jobs, PointJob(job({"budget": None}), weights=r2s)]
 
 
 def _run(
@@ -259,6 +265,14 @@ def _refuse_weights(reduction: dict[str, Any], r2s: tuple[float, ...] | None) ->
         raise click.UsageError("--r2 and --r2s exclude each other.")
     if not r2s and reduction["tracking"] is not None:
         raise click.UsageError("--tracking needs --r2s: a budget brings its own weight.")
+
+
+def _refuse_budgets(reduction: dict[str, Any], swept: Budgets | None) -> None:
+    fixed = read_budgets(reduction["budget"])
+    if fixed and swept is None:
+        raise click.UsageError("--budget and --r2s exclude each other.")
+    if swept is not None and swept[0] in fixed:
+        raise click.UsageError(f"--budget keeps {swept[0]}, which is swept: leave one of them out.")
 
 
 def _refuse_existing(out: str | None, plot: str | None, overwrite: bool) -> None:

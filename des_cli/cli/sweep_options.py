@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TypeAlias, get_args
+from typing import TypeAlias
 
 import click
 
+from des_cli.cli.options import without_percent
+
 DEFAULT_METRIC, DEFAULT_BUDGETS = "joint_deviation_relative", (0.01, 0.02, 0.05, 0.1)
-CONTROLS = ("scalar", "per-joint")
+CONTROLS = ("free", "scalar", "per-joint")
+DEFAULT_CONTROLS = ("scalar", "per-joint")
 
 Budgets: TypeAlias = tuple[str, tuple[float, ...]]
 """A metric and its budgets."""
@@ -25,30 +28,29 @@ def _read_numbers(text: str, example: str) -> tuple[float, ...]:
     return tuple(dict.fromkeys(values))
 
 
-def read_budgets(
+def read_swept_budgets(
     context: click.Context, parameter: click.Parameter, text: str | None
 ) -> Budgets | None:
-    """Read ``0.01,0.02`` or ``METRIC=0.01,0.02``."""
+    """Read ``0.01,0.02``, ``METRIC=0.01,0.02``, or either in percent: ``1%,2%``."""
     if text is None:
         return None
     metric, equals, values = text.rpartition("=")
     if equals:
         _require_metric(metric.strip())
-    return (metric.strip() or DEFAULT_METRIC, _read_numbers(values, "0.01,0.02,0.05,0.1"))
+    metric = metric.strip() or DEFAULT_METRIC
+    plain = ",".join(without_percent(metric, part.strip()) for part in values.split(","))
+    return metric, _read_numbers(plain, "0.01,0.02,0.05,0.1")
 
 
 def _require_metric(metric: str) -> None:
     from des_cli.files.wording import did_you_mean, one_of
-    from des_cli.pool import single_blas_thread
+    from des_cli.model.metric import METRICS
 
-    # This imports numpy, whose number of threads is settled by that.
-    with single_blas_thread():
-        from des_cli.model.metric import MetricKey
-
-    known = get_args(MetricKey)
-    if metric not in known:
-        hint = did_you_mean(metric, known)
-        raise click.BadParameter(f"{metric!r} is not a metric{hint}; it is {one_of(known)}.")
+    if metric not in METRICS:
+        hint = did_you_mean(metric, METRICS)
+        raise click.BadParameter(
+            f"{metric!r} is not a metric{hint}; it is {one_of(tuple(METRICS))}."
+        )
 
 
 def read_weights(
@@ -59,9 +61,11 @@ def read_weights(
 
 
 def read_controls(context: click.Context, parameter: click.Parameter, text: str) -> tuple[str, ...]:
-    """Read ``scalar,per-joint``."""
+    """Read ``free,per-joint``."""
     controls = tuple(dict.fromkeys(part.strip() for part in text.split(",")))
     wrong = [control for control in controls if control not in CONTROLS]
     if wrong:
-        raise click.BadParameter(f"{wrong[0]!r} is not {' or '.join(CONTROLS)}.")
+        raise click.BadParameter(
+            f"{wrong[0]!r} is not {', '.join(CONTROLS[:-1])} or {CONTROLS[-1]}."
+        )
     return controls

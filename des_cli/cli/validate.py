@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -55,7 +56,7 @@ def validate(
     1 if a file cannot be read.
     """
     from des_cli.batch import load_job
-    from des_cli.pipeline import require_consistent
+    from des_cli.reduction.consistency import require_consistent
 
     stdin = read_stdin(profiles)
     codes = set()
@@ -84,9 +85,11 @@ def validate(
 
 def understood(source: str, profile: Profile) -> dict[str, Any]:
     """Return what a profile was taken for."""
+    from des_cli.files.machine_yaml import occupant_mapping
+    from des_cli.model.machine import JOINTS
     from des_cli.model.profile import JointCommands
 
-    reduction = profile.reduction
+    reduction, machine = profile.reduction, profile.machine
     return {
         "source": source,
         "ok": True,
@@ -94,13 +97,23 @@ def understood(source: str, profile: Profile) -> dict[str, Any]:
         "kind": "joints" if isinstance(profile.command, JointCommands) else "body_rates",
         "samples": len(profile.t),
         "duration_s": float(profile.t[-1] - profile.t[0]),
-        "machine": profile.machine.name,
+        "machine": machine.name,
         "method": reduction.method,
         "algorithm": reduction.algorithm,
         "control": reduction.control,
         "axes": reduction.axes,
+        "objective": reduction.objective,
         "budget": {b.metric: b.most for b in reduction.budget} or None,
+        "optimise": list(reduction.optimise),
+        "ends": reduction.ends,
+        "lead_in_s": reduction.lead_in,
+        "lead_out_s": reduction.lead_out,
         "limits": reduction.limits,
+        "jerk_limit_rad_s3": {
+            joint: None if math.isinf(limit.jerk) else limit.jerk
+            for joint, limit in zip(JOINTS, machine.limits, strict=True)
+        },
+        "occupant": occupant_mapping(machine.occupant) or None,
         "sha256": profile.sha256,
     }
 
@@ -111,12 +124,45 @@ def _rejected(source: str, failure: Failure) -> dict[str, Any]:
 
 def _line(facts: dict[str, Any]) -> str:
     kind = {"joints": "joint commands", "body_rates": "body rates"}[facts["kind"]]
+    parts = [
+        f"{facts['method']} Coriolis by {facts['algorithm']}",
+        facts["control"],
+        f"{facts['axes']} axes",
+        *([f"objective {facts['objective']}"] if facts["objective"] != "coriolis" else []),
+        *(f"{metric} at most {most:g}" for metric, most in (facts["budget"] or {}).items()),
+        *([f"optimise {' and '.join(facts['optimise'])}"] if facts["optimise"] else []),
+        f"ends {facts['ends']}",
+        *(
+            f"{lead} {facts[f'{lead}_s']:g} s"
+            for lead in ("lead_in", "lead_out")
+            if facts[f"{lead}_s"]
+        ),
+        f"limits {facts['limits']}",
+        _jerk(facts["jerk_limit_rad_s3"]),
+        *_bounds(facts["occupant"] or {}),
+    ]
     return (
         f"{facts['source']}: ok: {facts['name']}, {kind}, {facts['samples']} samples, "
-        f"{facts['duration_s']:g} s, machine {facts['machine']}; {facts['method']} Coriolis by "
-        f"{facts['algorithm']}, {facts['control']}, {facts['axes']} axes, "
-        + "".join(
-            f"{metric} at most {most:g}, " for metric, most in (facts["budget"] or {}).items()
-        )
-        + f"limits {facts['limits']}"
+        f"{facts['duration_s']:g} s, machine {facts['machine']}; {', '.join(parts)}"
     )
+
+
+def _jerk(limits: dict[str, float | None]) -> str:
+    if all(limit is None for limit in limits.values()):
+        return "jerk unlimited"
+    each = ("unlimited" if limit is None else f"{limit:g}" for limit in limits.values())
+    return f"jerk limits {', '.join(each)} rad/s^3"
+
+
+def _bounds(occupant: dict[str, Any]) -> list[str]:
+    """Say what the occupant may get: ``gy_g -1 to 1``, ``g_onset_g_s at most 3``."""
+    words = []
+    for key, bound in occupant.items():
+        if not isinstance(bound, list):
+            words.append(f"{key} at most {bound:g}")
+        elif None in bound:
+            least, most = bound
+            words.append(f"{key} at least {least:g}" if most is None else f"{key} at most {most:g}")
+        else:
+            words.append(f"{key} {bound[0]:g} to {bound[1]:g}")
+    return words

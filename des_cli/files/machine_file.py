@@ -8,7 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from des_cli.files.findings import Findings
-from des_cli.files.machine_yaml import machine_mapping, named_machine, parse_machine
+from des_cli.files.machine_yaml import (
+    is_machine_file,
+    machine_mapping,
+    named_machine,
+    parse_machine,
+)
 from des_cli.files.source import decode, label_of, read_source
 from des_cli.files.yaml_nodes import Node
 from des_cli.model.machine import Machine
@@ -36,7 +41,7 @@ def load_machine(choice: str, option: str) -> Machine:
     """
     if choice in MACHINES:
         return MACHINES[choice]
-    if choice.endswith((".yaml", ".yml")) or "/" in choice or "\\" in choice:
+    if is_machine_file(choice):
         label = label_of(choice)
         return parse_machine(decode(read_source(Path(choice), label), label), label)
     findings = Findings(Node(option, {}))

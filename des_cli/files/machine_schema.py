@@ -13,6 +13,9 @@ from des_cli.files.sections import OMITTED, Measure, Number, Section, fault, mea
 from des_cli.files.wording import shown
 from des_cli.model.machine import Variable
 
+DEFAULT_MACHINE = "des"
+"""What a profile that names no machine is for."""
+
 VARIABLES: tuple[Variable, ...] = ("arm", "fork", "cab", "seat_yaw", "seat_pitch")
 
 _ONE_TIME = np.zeros(1)
@@ -95,9 +98,11 @@ JointLimitsSection = measured(
         Measure("angle", "angle", "the angle limit", required=False, others=("angle",)),
         Measure("rate", "rate", "the rate limit", required=False),
         Measure("acceleration", "acceleration", "the acceleration limit", required=False),
+        Measure("jerk", "jerk", "the jerk limit", required=False, others=("jerk",)),
     ),
     Positive,
     angle=(Literal["endless"], Field(default=OMITTED, description="a joint without end stops")),
+    jerk=(Literal["unlimited"], Field(default=OMITTED, description="a joint without a jerk limit")),
 )
 
 
@@ -109,6 +114,49 @@ class LimitsSection(Section):
     cab: JointLimitsSection = OMITTED  # type: ignore[valid-type]
 
 
+def _check_interval(bounds: list[float | None]) -> list[float | None]:
+    least, most = bounds
+    if least is None and most is None:
+        raise fault("bounds nothing: leave it out")
+    if least is not None and most is not None and not least < most:
+        raise fault(f"must be [least, most], the least below the most; is {shown(bounds)}")
+    return bounds
+
+
+Interval = Annotated[
+    list[Number | None],
+    Field(min_length=2, max_length=2, description="[least, most] in g; null for an open end"),
+    AfterValidator(_check_interval),
+]
+
+
+class OccupantBase(Section):
+    """Bounds on the G-vector, which is in g alone."""
+
+    gx_g: Interval = OMITTED
+    gy_g: Interval = OMITTED
+    gz_g: Interval = OMITTED
+    g_onset_g_s: Annotated[
+        Positive, Field(description="largest rate of change of a component of the G-vector")
+    ] = OMITTED
+
+
+OccupantSection = measured(
+    "Occupant",
+    "What the person in the seat may get.",
+    (
+        Measure(
+            "seat_angular_acceleration",
+            "acceleration",
+            "the seat's largest total angular acceleration",
+            required=False,
+        ),
+    ),
+    Positive,
+    base=OccupantBase,
+)
+
+
 class MachineBase(Section):
     """Keys of a machine without a unit."""
 
@@ -116,13 +164,14 @@ class MachineBase(Section):
     base: Text = OMITTED
     fork_axis: Literal["radial", "tangential"] = OMITTED
     limits: LimitsSection = OMITTED
+    occupant: OccupantSection = OMITTED  # type: ignore[valid-type]
     rows: Annotated[list[Row], Field(min_length=3, max_length=100)] = OMITTED  # type: ignore[valid-type]
     source: Annotated[str, Field(strict=True, max_length=2000)] = OMITTED
 
 
 MachineSection = measured(
     "MachineSection",
-    "A centrifuge: named lengths or rows, limits, gravity.",
+    "A centrifuge: named lengths or rows, limits, bounds for the occupant, gravity.",
     (
         Measure("gravity", "specific_force", "gravity", required=False),
         Measure("lengths", "length", "the lengths", required=False),

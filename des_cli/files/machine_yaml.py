@@ -18,11 +18,20 @@ from des_cli.files.machine_schema import (
 )
 from des_cli.files.wording import did_you_mean, one_of, plain
 from des_cli.files.yaml_nodes import Step, parse_yaml
-from des_cli.model.machine import JOINTS, DHRow, JointLimits, Machine
+from des_cli.model.machine import (
+    ASSUMED_JERK_PER_ACCELERATION,
+    JOINTS,
+    UNBOUNDED,
+    DHRow,
+    JointLimits,
+    Machine,
+    OccupantBounds,
+)
 from des_cli.model.machines import MACHINES, gimballed_centrifuge_rows
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
 _CHAIN_LENGTHS = ("L2", "Lx", "Ly", "Lz", "Lt")
+_G_COMPONENTS = ("gx", "gy", "gz")
 
 
 def parse_machine(text: str, label: str) -> Machine:
@@ -50,6 +59,11 @@ def parse_machine(text: str, label: str) -> Machine:
     findings.raise_if_any()
     assert machine is not None
     return machine
+
+
+def is_machine_file(choice: str) -> bool:
+    """Tell a file's path from the name of a built-in machine."""
+    return choice.endswith((".yaml", ".yml")) or "/" in choice or "\\" in choice
 
 
 def named_machine(name: str, path: Sequence[Step], findings: Findings) -> Machine | None:
@@ -100,6 +114,7 @@ def build_machine(section: Any, path: Sequence[Step], findings: Findings) -> Mac
         gravity=gravity,
         lengths=lengths,
         source=section.source or (base.source if base else ""),
+        occupant=_occupant(section.occupant, base.occupant if base else OccupantBounds()),
     )
 
 
@@ -117,9 +132,14 @@ def _limits(
                 for measure in own.measures
                 if own.given(measure.stem)
             }
-            if own.angle is not None:
-                changes["angle"] = math.inf
+            for key in ("angle", "jerk"):
+                if getattr(own, key) is not None:
+                    changes[key] = math.inf
             missing = [name for name in missing if name not in changes]
+            if not has_base:
+                changes.setdefault(
+                    "jerk", ASSUMED_JERK_PER_ACCELERATION * changes.get("acceleration", math.nan)
+                )
             limits = replace(limits, **changes)
         where = [*path, "limits", joint]
         for name in missing:
@@ -127,6 +147,25 @@ def _limits(
             findings.add(where, f"the {joint}'s {name} limit is missing: give {one_of(keys)}")
         found.append(limits)
     return found
+
+
+def _occupant(section: Any, base: OccupantBounds) -> OccupantBounds:
+    """Return what the occupant may get: what the section says, the rest as the base has it."""
+    if section is None:
+        return base
+    changes: dict[str, Any] = {}
+    for name in _G_COMPONENTS:
+        given = getattr(section, f"{name}_g")
+        if given is not None:
+            changes[name] = tuple(
+                open_end if end is None else end
+                for end, open_end in zip(given, UNBOUNDED, strict=True)
+            )
+    if section.g_onset_g_s is not None:
+        changes["g_onset"] = section.g_onset_g_s
+    if section.given("seat_angular_acceleration"):
+        changes["angular_acceleration"] = section.si("seat_angular_acceleration")
+    return replace(base, **changes)
 
 
 def _rows(
@@ -247,6 +286,7 @@ def machine_mapping(machine: Machine) -> dict[str, Any]:
             **({"angle": "endless"} if endless else {"angle_rad": bound.angle}),
             "rate_rad_s": bound.rate,
             "acceleration_rad_s2": bound.acceleration,
+            **({"jerk": "unlimited"} if math.isinf(bound.jerk) else {"jerk_rad_s3": bound.jerk}),
         }
     shown: dict[str, Any] = {"name": machine.name}
     if machine.source:
@@ -254,8 +294,24 @@ def machine_mapping(machine: Machine) -> dict[str, Any]:
     if machine.lengths:
         shown["lengths_m"] = dict(machine.lengths)
     shown["limits"] = limits
+    if machine.occupant.bounded:
+        shown["occupant"] = occupant_mapping(machine.occupant)
     shown["gravity_m_s2"] = machine.gravity
     shown["rows"] = [_row_mapping(row) for row in machine.rows]
+    return shown
+
+
+def occupant_mapping(occupant: OccupantBounds) -> dict[str, Any]:
+    """Return bounds for the occupant as the mapping that ``occupant:`` reads back."""
+    shown: dict[str, Any] = {}
+    for name in _G_COMPONENTS:
+        ends = getattr(occupant, name)
+        if ends != UNBOUNDED:
+            shown[f"{name}_g"] = [None if math.isinf(end) else end for end in ends]
+    if not math.isinf(occupant.g_onset):
+        shown["g_onset_g_s"] = occupant.g_onset
+    if not math.isinf(occupant.angular_acceleration):
+        shown["seat_angular_acceleration_rad_s2"] = occupant.angular_acceleration
     return shown
 
 

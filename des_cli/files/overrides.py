@@ -6,15 +6,18 @@ import re
 from collections.abc import Sequence
 
 from des_cli.errors import Problem, ProfileError
+from des_cli.files.machine_schema import DEFAULT_MACHINE
+from des_cli.files.machine_yaml import is_machine_file
 from des_cli.files.wording import plain, shown
 from des_cli.files.yaml_nodes import Node, Step, parse_yaml, path_text
+from des_cli.model.metric import STUDY_METRIC
 from des_cli.units import split_unit
 
 LABEL = "--set"
 """How places begin that are settings and not lines of a file."""
 
-_BUDGET_OR_WEIGHTS = ("budget", "r2", "tracking")
-"""Keys of the reduction of which a budget stands instead of the others."""
+_BUDGET, _WEIGHTS = "budget", ("r2", "tracking")
+"""Keys of the reduction of which the first stands instead of the others."""
 
 _STEP = re.compile(r"([A-Za-z_]\w*)((?:\[\d{1,6}\])*)")
 _ALTERNATIVES = ("joints", "body_rates", "samples")
@@ -24,8 +27,11 @@ _ALTERNATIVES = ("joints", "body_rates", "samples")
 def apply_settings(root: Node, settings: Sequence[str]) -> list[Problem]:
     """Change a document by settings, in their order.
 
-    A key replaces the one that gives the same quantity in another unit, so
-    ``initial.arm_deg=3`` also works where the profile says ``arm_rad``.
+    A key replaces the one that gives the same quantity in another unit, or without
+    one, so ``initial.arm_deg=3`` also works where the profile says ``arm_rad``. A budget
+    takes the weights away, and they take it away; ``reduction.budget.METRIC=0.1`` joins
+    the budgets that the profile has on other metrics, and ``machine.limits...`` changes
+    the built-in machine that the profile names.
     Whether the keys exist is for the schema to say, which names the setting
     as the place.
 
@@ -102,6 +108,10 @@ def _relabel(node: Node, label: str) -> Node:
 
 def _descend(node: Node, step: Step, path: Sequence[Step], label: str) -> Node:
     _check_container(node, step, path, label)
+    if isinstance(node.value, dict) and list(path) == ["reduction", _BUDGET]:
+        _make_budgets_a_mapping(node.value)
+    if isinstance(node.value, dict) and list(path) == ["machine"]:
+        _make_machine_a_mapping(node.value, label)
     if isinstance(node.value, dict) and step not in node.value:
         # The schema, not this function, knows which keys exist.
         node.value[str(step)] = Node(label, {})
@@ -109,6 +119,22 @@ def _descend(node: Node, step: Step, path: Sequence[Step], label: str) -> Node:
     if isinstance(node.value, dict) and node.value[str(step)].value is None:
         node.value[str(step)] = Node(label, {})
     return dict(node.children())[step]
+
+
+def _make_budgets_a_mapping(reduction: dict[str, Node]) -> None:
+    """Name the metric of a bare budget, and take the weights away that a budget replaces."""
+    for other in _same_quantity(_BUDGET, reduction, top=False):
+        del reduction[other]
+    bare = reduction.get(_BUDGET)
+    if bare is not None and type(bare.value) in (int, float):
+        reduction[_BUDGET] = Node(bare.place, {STUDY_METRIC: bare}, {STUDY_METRIC: bare.place})
+
+
+def _make_machine_a_mapping(document: dict[str, Node], label: str) -> None:
+    """Make a built-in machine, or the default one, the base of what is changed in it."""
+    named = document.get("machine", Node(label, DEFAULT_MACHINE))
+    if isinstance(named.value, str) and not is_machine_file(named.value):
+        document["machine"] = Node(named.place, {"base": named}, {"base": named.place})
 
 
 def _put(node: Node, path: Sequence[Step], value: Node, label: str) -> None:
@@ -125,20 +151,14 @@ def _put(node: Node, path: Sequence[Step], value: Node, label: str) -> None:
 
 def _same_quantity(key: str, present: Sequence[str] | dict[str, Node], *, top: bool) -> list[str]:
     """Return the other keys that give the same as ``key``."""
-    stem, unit = split_unit(key)
-    if key in _BUDGET_OR_WEIGHTS:
-        return [
-            o for o in present if o in _BUDGET_OR_WEIGHTS and (o == "budget") != (key == "budget")
-        ]
+    if key == _BUDGET:
+        return [other for other in present if other in _WEIGHTS]
+    if key in _WEIGHTS:
+        return [other for other in present if other == _BUDGET]
     if top:
         return [o for o in present if o != key and {key, o} <= set(_ALTERNATIVES)]
-    if unit is None:
-        return []
-    return [
-        other
-        for other in present
-        if other != key and (split := split_unit(other))[0] == stem and split[1] is not None
-    ]
+    stem = split_unit(key)[0]
+    return [other for other in present if other != key and split_unit(other)[0] == stem]
 
 
 def _check_container(node: Node, step: Step, path: Sequence[Step], label: str) -> None:

@@ -14,7 +14,12 @@ from pydantic import ValidationError
 from des_cli.errors import DesError, ProfileError
 from des_cli.files.commands import check_commands, read_commands, read_time
 from des_cli.files.findings import Findings
-from des_cli.files.machine_yaml import build_machine, named_machine, parse_machine
+from des_cli.files.machine_yaml import (
+    build_machine,
+    is_machine_file,
+    named_machine,
+    parse_machine,
+)
 from des_cli.files.overrides import LABEL, apply_settings
 from des_cli.files.profile_csv import parse_samples
 from des_cli.files.reduction_section import read_reduction
@@ -173,7 +178,7 @@ def read_machine(document: ProfileSettings, reading: Reading, findings: Findings
     choice: Any = document.machine
     if not isinstance(choice, str):
         return build_machine(choice, ("machine",), findings)
-    if choice.endswith((".yaml", ".yml")) or "/" in choice or "\\" in choice:
+    if is_machine_file(choice):
         label, text = reading.referred(choice, findings.root.place_of(["machine"]))
         return parse_machine(text, label)
     return named_machine(choice, ("machine",), findings)

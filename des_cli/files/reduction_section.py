@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from des_cli.files.findings import Findings
 from des_cli.files.sections import Section
 from des_cli.model.arrays import Floats
-from des_cli.model.metric import Budget
+from des_cli.model.metric import METRICS, STUDY_METRIC, Budget, MetricKey
 from des_cli.model.profile import Reduction
 
 _PLAIN = (
@@ -22,13 +23,10 @@ _PLAIN = (
     "iterations",
     "max_iterations",
     "ends",
+    "objective",
     "tolerance",
 )
-DEFAULT_METRIC = "joint_deviation_relative"
-"""What a budget without a name is on."""
-
-ABSOLUTE = ("seat_g_rms_error_g", "attitude_error_max_deg")
-"""Budgets with a unit; all others are shares."""
+_WEIGHTS = ("r2", "tracking")
 
 _ROUNDING = 1e-12
 """An eigenvalue this far below zero, relative to the largest, is rounding."""
@@ -46,13 +44,14 @@ def read_reduction(section: Section | None, findings: Findings) -> Reduction:
     Returns
     -------
     Reduction
-        With the model's default for everything left out.
+        With the defaults of `defaults_beside` for everything left out.
     """
     if section is None:
         return Reduction()
     given = {key: getattr(section, key) for key in section.model_fields_set}
-    values: dict[str, Any] = {key: given[key] for key in _PLAIN if key in given}
-    for key in ("r2", "tracking"):
+    values: dict[str, Any] = defaults_beside(given)
+    values |= {key: given[key] for key in _PLAIN if key in given}
+    for key in _WEIGHTS:
         if key in given:
             values[key] = np.broadcast_to(np.array(given[key], dtype=np.float64), (3,))
     if "r1" in given:
@@ -60,26 +59,67 @@ def read_reduction(section: Section | None, findings: Findings) -> Reduction:
         values["r1"] = np.diag(weight) if weight.ndim == 1 else _checked(weight, findings)
     if "hold" in given:
         values["hold"] = frozenset(given["hold"])
-    weights = [key for key in ("r2", "tracking") if key in given]
+    if "optimise" in given:
+        values["optimise"] = tuple(given["optimise"])
+    for key in ("lead_in", "lead_out"):
+        values[key] = section.si(key)
     if "budget" in given:
+        values["budget"] = _budgets(given["budget"], findings)
+        weights = [key for key in _WEIGHTS if key in given]
         if weights:
             findings.add(
                 ["reduction", "budget"], f"stands instead of {' and '.join(weights)}: give either"
             )
-        budget = given["budget"]
-        by_metric: dict[Any, float] = (
-            budget if isinstance(budget, dict) else {DEFAULT_METRIC: budget}
-        )
-        values["budget"] = tuple(Budget(m, float(most)) for m, most in by_metric.items())
-        for metric, most in by_metric.items():
-            if metric not in ABSOLUTE and most >= 1.0:
-                findings.add(
-                    ["reduction", "budget"],
-                    f"is a share and must be below 1: 0.05 means 5 % of {metric} (not {most:g})",
-                )
-    elif weights or given.get("algorithm") == "report-sweep" or given.get("method") == "zero":
-        values["budget"] = ()
     return Reduction(**values)
+
+
+def defaults_beside(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what differs from the model's defaults, because of what a section gives.
+
+    The model's defaults are those of a motion that is fit to fly: free joints, budgets
+    on what is felt, the start matched. They hold for every section, the empty one
+    included, but for the study's own problem. That is a section with weights (``r2``,
+    ``tracking``), with ``algorithm: report-sweep``, or with ``method: zero``:
+
+    - nothing is kept within a budget: weights, the single sweep and a tolerance each
+      settle by themselves how far the motion may leave the desired one;
+    - the control is a factor on the desired rates, one for all joints, and for
+      ``method: zero`` one for each, since a single one could only stand still;
+    - the ends are free.
+
+    What the section gives by itself goes before all of these.
+
+    Parameters
+    ----------
+    given : mapping of str to object
+        The keys of the section and their values.
+
+    Returns
+    -------
+    dict of str to object
+        Fields of `Reduction`.
+
+    >>> defaults_beside({"axes": "report"}), defaults_beside({"r2": 1.0})
+    ({}, {'budget': (), 'control': 'scalar', 'ends': 'free'})
+    """
+    zero = given.get("method") == "zero"
+    weighted = any(key in given for key in _WEIGHTS)
+    if not (zero or weighted or given.get("algorithm") == "report-sweep"):
+        return {}
+    return {"budget": (), "control": "per-joint" if zero else "scalar", "ends": "free"}
+
+
+def _budgets(given: float | Mapping[MetricKey, float], findings: Findings) -> tuple[Budget, ...]:
+    """Return the budgets, and say which shares are not below one."""
+    by_metric: Mapping[MetricKey, float]
+    by_metric = given if isinstance(given, Mapping) else {STUDY_METRIC: given}
+    for metric, most in by_metric.items():
+        if METRICS[metric].relative and most >= 1.0:
+            findings.add(
+                ["reduction", "budget", *([metric] if by_metric is given else [])],
+                f"is a share and must be below 1: 0.05 means 5 % of {metric} (not {most:g})",
+            )
+    return tuple(Budget(metric, float(most)) for metric, most in by_metric.items())
 
 
 def _checked(weight: Floats, findings: Findings) -> Floats:

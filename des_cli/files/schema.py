@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
 from des_cli.files.expression import Expression, ExpressionError, parse_expression
-from des_cli.files.machine_schema import MachineSection
+from des_cli.files.machine_schema import DEFAULT_MACHINE, MachineSection
 from des_cli.files.sections import OMITTED, Measure, Number, Section, fault, measured
 from des_cli.files.wording import shown
 from des_cli.model.machine import Joint
@@ -19,9 +19,11 @@ from des_cli.model.profile import (
     Axes,
     Control,
     Ends,
+    FreeParameter,
     JacobianAt,
     LimitsPolicy,
     Method,
+    Objective,
 )
 
 _NAME = re.compile(r"\w([\w .,+()-]{0,98}[\w)+])?")
@@ -207,21 +209,28 @@ Budget = Annotated[
     Annotated[Positive, Tag("<number>")]
     | Annotated[
         dict[MetricKey, Positive],
-        Field(min_length=1, max_length=1),
+        Field(min_length=1),
         Tag("<by metric>"),
     ],
     Discriminator(
         _budget_kind,
         custom_error_type="profile",
         custom_error_message="{words}",
-        custom_error_context={"words": "must be a number, or one metric with a number"},
+        custom_error_context={"words": "must be a number, or metrics with a number each"},
     ),
-    Field(description="largest joint_deviation_relative, or one fidelity metric and its limit"),
+    Field(description="largest joint_deviation_relative, or fidelity metrics and their limits"),
 ]
 
 
-class ReductionSection(Section):
-    """How to reduce the Coriolis; what is left out keeps its default."""
+def _check_unequal(names: list[str]) -> list[str]:
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise fault(f"names {name} twice", (index,))
+    return names
+
+
+class ReductionBase(Section):
+    """Keys of a reduction without a unit."""
 
     method: Method = OMITTED
     algorithm: Algorithm = OMITTED
@@ -237,7 +246,21 @@ class ReductionSection(Section):
     max_iterations: Annotated[int, Field(strict=True, ge=1, le=1_000_000)] = OMITTED
     hold: list[Joint] = OMITTED
     ends: Ends = OMITTED
+    objective: Objective = OMITTED
+    optimise: Annotated[list[FreeParameter], AfterValidator(_check_unequal)] = OMITTED
     tolerance: Positive = OMITTED
+
+
+ReductionSection = measured(
+    "ReductionSection",
+    "How to reduce the Coriolis; what is left out keeps its default.",
+    (
+        Measure("lead_in", "time", "the time to ramp from rest to the start", required=False),
+        Measure("lead_out", "time", "the time to ramp from the end to rest", required=False),
+    ),
+    NotNegative,
+    base=ReductionBase,
+)
 
 
 MachineChoice = Annotated[
@@ -251,10 +274,10 @@ class ProfileSettings(Section):
     """What a profile says beside its commands."""
 
     name: Annotated[str, Field(strict=True), AfterValidator(_check_name)] = OMITTED
-    machine: MachineChoice = "des"
+    machine: MachineChoice = DEFAULT_MACHINE
     seat: Seat = OMITTED  # type: ignore[valid-type]
     initial: Initial = OMITTED  # type: ignore[valid-type]
-    reduction: ReductionSection = OMITTED
+    reduction: ReductionSection = OMITTED  # type: ignore[valid-type]
 
 
 class ProfileDocument(ProfileSettings):
@@ -267,6 +290,7 @@ class ProfileDocument(ProfileSettings):
     joints: Joints = OMITTED  # type: ignore[valid-type]
     body_rates: BodyRates = OMITTED  # type: ignore[valid-type]
     samples: Samples = OMITTED
+    reduction: ReductionSection = OMITTED  # type: ignore[valid-type]
 
 
 class _Schema(GenerateJsonSchema):

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Literal
 
-from des_cli.model.machine import DHRow, JointLimits, Machine
+from des_cli.model.machine import ASSUMED_JERK_PER_ACCELERATION, DHRow, JointLimits, Machine
 from des_cli.units import FOOT_M, STANDARD_GRAVITY_M_S2
 
 _QUARTER = math.pi / 2
@@ -57,6 +57,17 @@ def gimballed_centrifuge_rows(
     )
 
 
+def limits_with_assumed_jerk(angle: float, rate: float, acceleration: float) -> JointLimits:
+    """Return the limits of a joint whose jerk limit nobody published.
+
+    Parameters
+    ----------
+    angle, rate, acceleration : float
+        [rad], [rad/s], [rad/s^2]
+    """
+    return JointLimits(angle, rate, acceleration, ASSUMED_JERK_PER_ACCELERATION * acceleration)
+
+
 _DES_LENGTHS = {
     name: feet * FOOT_M
     for name, feet in {
@@ -73,15 +84,16 @@ DES = Machine(
     name="des",
     rows=gimballed_centrifuge_rows(_DES_LENGTHS),
     limits=(
-        JointLimits(angle=math.inf, rate=5.86, acceleration=0.63),
-        JointLimits(angle=2 * math.pi, rate=3.14, acceleration=2.5),
-        JointLimits(angle=2 * math.pi, rate=3.14, acceleration=5.0),
+        limits_with_assumed_jerk(angle=math.inf, rate=5.86, acceleration=0.63),
+        limits_with_assumed_jerk(angle=2 * math.pi, rate=3.14, acceleration=2.5),
+        limits_with_assumed_jerk(angle=2 * math.pi, rate=3.14, acceleration=5.0),
     ),
     lengths=_DES_LENGTHS,
     source=(
         "Coriolis study of the Dynamic Environment Simulator, Tables 1 and 2. The table "
         "bounds the arm's angle by 2 pi, but the arm turns endlessly; L1 is not part of the "
-        "chain; the length printed as a second L_1 is Lt."
+        "chain; the length printed as a second L_1 is Lt. Assumed, because the tables have none: "
+        "jerk limits of 2 1/s times the acceleration limits."
     ),
 )
 
@@ -94,7 +106,7 @@ JOHNSVILLE = Machine(
     name="johnsville",
     rows=gimballed_centrifuge_rows(_JOHNSVILLE_LENGTHS, fork_axis="tangential"),
     limits=(
-        JointLimits(
+        limits_with_assumed_jerk(
             angle=math.inf,
             rate=_JOHNSVILLE_RATE,
             acceleration=10.0 * STANDARD_GRAVITY_M_S2 / (2 * _JOHNSVILLE_RATE * _JOHNSVILLE_RADIUS),
@@ -109,7 +121,8 @@ JOHNSVILLE = Machine(
         "10 g/s (D. Darling, Internet Encyclopedia of Science, Johnsville Centrifuge). Derived: "
         "the arm's rate gives 40 g at 50 ft, its acceleration 10 g/s at that rate. Assumed, "
         "because not found published: the outer gimbal turns about the direction of travel, the "
-        "head sits at the gimbals' centre, and the gimbals have the DES's fork and cab limits."
+        "head sits at the gimbals' centre, the gimbals have the DES's fork and cab limits, and the "
+        "jerk limits are 2 1/s times the acceleration limits."
     ),
 )
 
@@ -119,9 +132,9 @@ COVISART = Machine(
     name="covisart",
     rows=gimballed_centrifuge_rows(_COVISART_LENGTHS, fork_axis="tangential"),
     limits=(
-        JointLimits(angle=math.inf, rate=math.radians(225.0), acceleration=2.5),
-        JointLimits(angle=2 * math.pi, rate=math.radians(225.0), acceleration=2.5),
-        JointLimits(angle=2 * math.pi, rate=math.radians(210.0), acceleration=5.0),
+        limits_with_assumed_jerk(angle=math.inf, rate=math.radians(225.0), acceleration=2.5),
+        limits_with_assumed_jerk(angle=2 * math.pi, rate=math.radians(225.0), acceleration=2.5),
+        limits_with_assumed_jerk(angle=2 * math.pi, rate=math.radians(210.0), acceleration=5.0),
     ),
     lengths=_COVISART_LENGTHS,
     source=(
@@ -129,8 +142,8 @@ COVISART = Machine(
         "simulator user guide): rotation without end in three axes, tabulated as +-360 deg; "
         "largest rates yaw 225, roll 225, pitch 210 deg/s. Here the arm is the yaw axis and turns "
         "endlessly, the fork the roll, the cab the pitch. Assumed, because not found published: "
-        "this order of the axes, the head at their common centre, and the accelerations (those of "
-        "the DES's fork, fork and cab)."
+        "this order of the axes, the head at their common centre, the accelerations (those of the "
+        "DES's fork, fork and cab), and jerk limits of 2 1/s times the accelerations."
     ),
 )
 

@@ -78,6 +78,13 @@ class BodyRates:
             freeze(self, "attitude", (n + 1, 4))
 
 
+FELT_BUDGETS = (
+    Budget("seat_g_rms_error_g", 0.05),
+    Budget("seat_rate_deviation_relative", 0.1),
+)
+"""What a silent profile may change of what the pilot feels."""
+
+
 @dataclass(frozen=True)
 class Reduction:
     """How to reduce the Coriolis; the defaults are what a silent profile gets.
@@ -100,7 +107,7 @@ class Reduction:
     max_iterations : int
         Newton steps in all.
     hold : frozenset of str
-        Joints that keep their desired motion (per-joint control).
+        Joints that keep their desired motion (free and per-joint control).
     ends : {"free", "match-start", "match-rates", "match-both"}
         Where the modified motion equals the desired one beside the angles at the
         start, which it always does: nowhere, in the rates at the start, in the
@@ -123,7 +130,7 @@ class Reduction:
 
     method: Method = "minimum"
     algorithm: Algorithm = "optimum"
-    control: Control = "per-joint"
+    control: Control = "free"
     axes: Axes = "seat"
     jacobian: JacobianAt = "desired"
     r1: Floats = field(default_factory=lambda: 2.0 * np.eye(3))
@@ -133,8 +140,8 @@ class Reduction:
     iterations: int = 1
     max_iterations: int = 3000
     hold: frozenset[Joint] = frozenset()
-    ends: Ends = "free"
-    budget: tuple[Budget, ...] = (Budget("joint_deviation_relative", 0.05),)
+    ends: Ends = "match-start"
+    budget: tuple[Budget, ...] = FELT_BUDGETS
     objective: Objective = "coriolis"
     optimise: tuple[FreeParameter, ...] = ()
     lead_in: float = 0.0

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from types import MappingProxyType
+from typing import Any, Literal, TypeAlias
 
 from des_cli.errors import NoSolutionError, NotReleasedError, Problem
 from des_cli.model.machine import Joint
@@ -12,34 +14,60 @@ from des_cli.model.profile import Profile
 from des_cli.model.response import Response
 from des_cli.model.solution import Solution
 
+JointQuantity: TypeAlias = Literal["angle", "rate", "acceleration", "jerk", "rate step"]
+SeatQuantity: TypeAlias = Literal[
+    "Gx", "Gy", "Gz", "Gx onset", "Gy onset", "Gz onset", "angular acceleration"
+]
+
+_UNITS: Mapping[JointQuantity | SeatQuantity, str] = MappingProxyType(
+    {
+        "angle": "rad",
+        "rate": "rad/s",
+        "acceleration": "rad/s^2",
+        "jerk": "rad/s^3",
+        "rate step": "rad/s",
+        "Gx": "g",
+        "Gy": "g",
+        "Gz": "g",
+        "Gx onset": "g/s",
+        "Gy onset": "g/s",
+        "Gz onset": "g/s",
+        "angular acceleration": "rad/s^2",
+    }
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """A joint limit that a motion breaks.
+    """A joint limit, or a bound for the occupant, that a motion breaks.
 
     Parameters
     ----------
     motion : {"desired", "modified"}
-    joint : {"arm", "fork", "cab"}
-    quantity : {"angle", "rate", "acceleration", "rate step"}
+    joint : {"arm", "fork", "cab", "seat"}
+        The joint, or the seat for a bound on what the occupant gets.
+    quantity : str
         A rate step is a jump of the rate at one sample: no acceleration limit
         admits it, and a finite difference across it would mean nothing.
     peak, limit : float
-        Largest magnitude and the bound [rad, rad/s, rad/s^2; a step in rad/s].
+        The value farthest beyond the bound, and the bound, in the quantity's unit: a
+        magnitude, but of a component of the G-vector the component itself.
     from_s, to_s : float
         First and last time at which the bound is broken [s].
     """
 
     motion: Literal["desired", "modified"]
-    joint: Joint
-    quantity: Literal["angle", "rate", "acceleration", "rate step"]
+    joint: Joint | Literal["seat"]
+    quantity: JointQuantity | SeatQuantity
     peak: float
     limit: float
     from_s: float
     to_s: float
 
     def __str__(self) -> str:
-        unit = {"angle": "rad", "acceleration": "rad/s^2"}.get(self.quantity, "rad/s")
+        unit = _UNITS[self.quantity]
+        bound = "bound" if self.joint == "seat" else "limit"
+        beyond = "exceeds" if self.peak > self.limit else "is below"
         span = (
             f"at t = {self.from_s:g} s"
             if self.from_s == self.to_s
@@ -47,7 +75,7 @@ class Violation:
         )
         return (
             f"{self.motion} {self.joint} {self.quantity} {self.peak:.4g} {unit} "
-            f"exceeds the limit {self.limit:g} {unit} {span}"
+            f"{beyond} the {bound} {self.limit:g} {unit} {span}"
         )
 
 
@@ -90,7 +118,7 @@ class Run:
     checks : tuple of Check
         The independent verification.
     violations : tuple of Violation
-        Limits that the desired or the modified motion breaks.
+        Limits, and bounds for the occupant, that the desired or the modified motion breaks.
     metrics : dict
         The content of ``metrics.json``.
     notices : tuple of str
@@ -117,8 +145,8 @@ class Run:
         NoSolutionError
             If the solver did not converge.
         NotReleasedError
-            If a verification check failed, or a limit under ``check`` or
-            ``enforce``.
+            If a verification check failed, or a limit or a bound for the occupant
+            under ``check`` or ``enforce``.
         """
         name = self.profile.name
         if not self.solution.usable:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
+from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.coriolis import angular_acceleration_split
 from des_cli.model.arrays import Floats
-from des_cli.model.machine import JOINTS, Machine
+from des_cli.model.machine import JOINTS, Machine, Seat
 from des_cli.model.motion import Motion
-from des_cli.model.run import Violation
+from des_cli.model.response import Response
+from des_cli.model.run import SeatQuantity, Violation
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that rounding alone may make."""
@@ -18,21 +22,28 @@ TOLERANCE = 1e-9
 STEP_TOLERANCE = 1e-9
 """A jump of the rate at a sample [rad/s] below which it is rounding, and no step."""
 
+ROUNDING = 4.0 * np.finfo(np.float64).eps
+"""Relative error of a rate, or of an angle in a table, that a few operations on doubles
+leave. A jerk divides it by the step squared, or cubed: it is no longer small there."""
+
 Which = Literal["desired", "modified"]
+
+_Component = tuple[SeatQuantity, SeatQuantity, tuple[float, float]]
 
 
 @dataclass(frozen=True)
 class Peaks:
     """Largest magnitudes of a motion, (3,) each, for arm, fork and cab.
 
-    ``acceleration`` leaves out the samples at which the rate steps: a finite
-    difference across a step grows without bound as the grid is refined.
+    ``acceleration`` and ``jerk`` leave out the samples at which the rate steps: a
+    finite difference across a step grows without bound as the grid is refined.
     ``rate_step`` is the largest step [rad/s].
     """
 
     angle: Floats
     rate: Floats
     acceleration: Floats
+    jerk: Floats
     rate_step: Floats
 
 
@@ -42,6 +53,7 @@ def measure_peaks(motion: Motion) -> Peaks:
         angle=np.max(np.abs(motion.angle), axis=0),
         rate=np.max(np.abs(motion.rate_sides), axis=(0, 1)),
         acceleration=np.max(acceleration_magnitude(motion), axis=0),
+        jerk=np.max(jerk_magnitude(motion), axis=0),
         rate_step=np.max(np.abs(motion.rate_step), axis=0, initial=0.0),
     )
 
@@ -68,8 +80,33 @@ def acceleration_magnitude(motion: Motion) -> Floats:
     return magnitude
 
 
+def jerk_magnitude(motion: Motion) -> Floats:
+    """Return the jerk at each sample, (n, 3) [rad/s^3]; 0 at the ends and at a rate step."""
+    magnitude = np.zeros_like(motion.angle)
+    steps = np.abs(motion.rate_step) > STEP_TOLERANCE
+    magnitude[1:-1] = np.where(steps, 0.0, np.abs(motion.jerk))
+    return magnitude
+
+
+def _jerk_rounding(motion: Motion, which: Which) -> Floats:
+    """Return how much of each sample's jerk may be rounding of doubles, (n, 3) [rad/s^3].
+
+    A modified motion has rates of its own. Those of a desired motion may have been
+    estimated from a table of positions, whose rounding is divided by the step once more.
+    """
+    allowance = np.zeros_like(motion.angle)
+    if len(motion.t) < 3:
+        return allowance
+    step = np.minimum(motion.step[1:], motion.step[:-1])[:, None]
+    rate = np.max(np.abs(motion.rate_sides), axis=1)
+    allowance[1:-1] = 4.0 * ROUNDING * np.maximum(rate[1:], rate[:-1]) / step**2
+    if which == "desired":
+        allowance[1:-1, 1:] += 4.0 * ROUNDING * np.abs(motion.angle[1:-1, 1:]) / step**3
+    return allowance
+
+
 def find_violations(machine: Machine, motion: Motion, which: Which) -> tuple[Violation, ...]:
-    """Name every limit that a motion breaks.
+    """Name every joint limit that a motion breaks.
 
     Parameters
     ----------
@@ -82,28 +119,127 @@ def find_violations(machine: Machine, motion: Motion, which: Which) -> tuple[Vio
     rate = np.zeros_like(motion.angle)
     rate[:-1] = np.abs(motion.rate_start)
     rate[1:] = np.maximum(rate[1:], np.abs(motion.rate_end))
-    acceleration = acceleration_magnitude(motion)
+    acceleration, jerk = acceleration_magnitude(motion), jerk_magnitude(motion)
+    rounding = _jerk_rounding(motion, which)
     for j, (joint, limit) in enumerate(zip(JOINTS, machine.limits, strict=True)):
         step = np.zeros(len(motion.t))
         step[1:-1] = np.abs(motion.rate_step[:, j])
         # No finite acceleration makes a step: any step beyond rounding is named.
-        for quantity, values, bound, allowed in (
-            ("angle", np.abs(motion.angle[:, j]), limit.angle, limit.angle),
-            ("rate", rate[:, j], limit.rate, limit.rate),
-            ("acceleration", acceleration[:, j], limit.acceleration, limit.acceleration),
+        for quantity, values, bound, allowance in (
+            ("angle", np.abs(motion.angle[:, j]), limit.angle, 0.0),
+            ("rate", rate[:, j], limit.rate, 0.0),
+            ("acceleration", acceleration[:, j], limit.acceleration, 0.0),
+            ("jerk", jerk[:, j], limit.jerk, rounding[:, j]),
             ("rate step", step, 0.0, STEP_TOLERANCE),
         ):
-            broken = np.flatnonzero(values > allowed * (1.0 + TOLERANCE))
+            broken = np.flatnonzero(values > bound * (1.0 + TOLERANCE) + allowance)
             if len(broken):
                 found.append(
                     Violation(
                         motion=which,
                         joint=joint,
                         quantity=quantity,  # type: ignore[arg-type]
-                        peak=float(values.max()),
+                        peak=float(values[broken].max()),
                         limit=bound,
                         from_s=float(motion.t[broken[0]]),
                         to_s=float(motion.t[broken[-1]]),
                     )
                 )
     return tuple(found)
+
+
+def find_occupant_violations(
+    machine: Machine, seat: Seat, response: Response, motion: Motion, which: Which
+) -> tuple[Violation, ...]:
+    """Name every bound on what the occupant may get that a motion breaks.
+
+    Parameters
+    ----------
+    machine : Machine
+        Its ``occupant`` has the bounds.
+    seat : Seat
+    response : Response
+        Of the motion.
+    motion : Motion
+    which : {"desired", "modified"}
+        How the violations call the motion.
+
+    Returns
+    -------
+    tuple of Violation
+        Of the joint ``seat``; one for each component of the G-vector and end of its
+        interval, one for each component's onset, one for the angular acceleration.
+    """
+    bounds = machine.occupant
+    if not bounds.bounded:
+        return ()
+    found = list(_g_violations(machine, response, motion, which))
+    if np.isfinite(bounds.angular_acceleration):
+        magnitude = _at_samples(angular_acceleration_magnitude(machine, seat, motion))
+        found += _beyond(
+            which, "angular acceleration", magnitude, bounds.angular_acceleration, motion.t
+        )
+    return tuple(found)
+
+
+def angular_acceleration_magnitude(machine: Machine, seat: Seat, motion: Motion) -> Floats:
+    """Return |dW/dt| of the seat at both ends of every interval, (n - 1, 2) [rad/s^2]."""
+    rates = motion.rate_sides
+    accelerations = np.broadcast_to(motion.acceleration[:, None, :], rates.shape)
+    parts = angular_acceleration_split(
+        chain_of(machine, seat), motion.angle_sides, rates, accelerations, "seat"
+    )
+    return np.asarray(np.linalg.norm(parts[0] + parts[1], axis=-1))
+
+
+def _g_violations(
+    machine: Machine, response: Response, motion: Motion, which: Which
+) -> Iterator[Violation]:
+    """Yield what breaks a bound on the G-vector or on its onset."""
+    bounds = machine.occupant
+    components: tuple[_Component, ...] = (
+        ("Gx", "Gx onset", bounds.gx),
+        ("Gy", "Gy onset", bounds.gy),
+        ("Gz", "Gz onset", bounds.gz),
+    )
+    for index, (component, onset, (least, most)) in enumerate(components):
+        sides = response.seat_g[..., index]
+        yield from _beyond(which, component, _at_samples(sides), most, motion.t)
+        yield from _beyond(which, component, _at_samples(-sides), -least, motion.t, sign=-1.0)
+        # from sample to sample, so that a jump at a sample counts as what it is on this grid
+        samples = np.append(sides[:, 0], sides[-1, 1])
+        change = np.abs(np.diff(samples)) / motion.step
+        yield from _beyond(
+            which, onset, _at_samples(np.stack([change] * 2, axis=1)), bounds.g_onset, motion.t
+        )
+
+
+def _beyond(
+    which: Which,
+    quantity: SeatQuantity,
+    values: Floats,
+    most: float,
+    t: Floats,
+    *,
+    sign: float = 1.0,
+) -> Iterator[Violation]:
+    """Yield the violation of an upper bound, or with sign -1 of a lower one on -values."""
+    broken = np.flatnonzero(values > most + TOLERANCE * max(1.0, abs(most)))
+    if np.isfinite(most) and len(broken):
+        yield Violation(
+            motion=which,
+            joint="seat",
+            quantity=quantity,
+            peak=sign * float(values.max()),
+            limit=sign * most,
+            from_s=float(t[broken[0]]),
+            to_s=float(t[broken[-1]]),
+        )
+
+
+def _at_samples(sides: Floats) -> Floats:
+    """Return the largest value at each sample, (n,), of values at both ends of intervals."""
+    samples = np.full(len(sides) + 1, -np.inf)
+    samples[:-1] = sides[:, 0]
+    samples[1:] = np.maximum(samples[1:], sides[:, 1])
+    return samples

@@ -1,5 +1,6 @@
 """The registry of options agrees with what it stands for."""
 
+import json
 from typing import get_args
 
 import click
@@ -25,6 +26,9 @@ def test_table_formats_are_those_that_can_be_written() -> None:
         ("axes", profile.Axes),
         ("jacobian", profile.JacobianAt),
         ("limits", profile.LimitsPolicy),
+        ("objective", profile.Objective),
+        ("ends", profile.Ends),
+        ("optimise", profile.FreeParameter),
     ],
 )
 def test_choices_are_those_of_the_model(key: str, words: object) -> None:
@@ -50,20 +54,78 @@ def test_reduction_options_become_settings_in_order() -> None:
 
 
 def test_a_budget_becomes_a_setting_inside_the_limits() -> None:
-    assert reduction_settings({"budget": "0.05"}) == (
-        "reduction.budget=0.05",
+    assert reduction_settings({"budget": ("0.05",)}) == (
+        "reduction.budget={joint_deviation_relative: 0.05}",
         "reduction.limits=enforce",
     )
-    assert reduction_settings({"budget": "seat_g_rms_error_g = 0.1", "limits": "warn"}) == (
+    both = ("seat_g_rms_error_g = 0.1", "seat_rate_deviation_relative=10%")
+    assert reduction_settings({"budget": both, "limits": "warn"}) == (
         "reduction.limits=warn",
-        "reduction.budget={seat_g_rms_error_g: 0.1}",
+        "reduction.budget={seat_g_rms_error_g: 0.1, seat_rate_deviation_relative: 0.1}",
     )
+    assert reduction_settings({"budget": (), "optimise": ()}) == ()
+
+
+@pytest.mark.parametrize(
+    ("budgets", "words"),
+    [
+        (("5%", "joint_deviation_relative=0.1"), "twice for joint_deviation_relative"),
+        (("seat_g_rms_error_g=5%",), "seat_g_rms_error_g is no share: give it in g"),
+        (("attitude_error_max_deg=5 %",), "give it in deg"),
+    ],
+)
+def test_a_metric_twice_and_a_percentage_of_what_is_no_share(
+    budgets: tuple[str, ...], words: str
+) -> None:
+    with pytest.raises(click.UsageError, match=words):
+        reduction_settings({"budget": budgets})
+
+
+def test_free_parameters_and_leads_become_settings() -> None:
+    values = {"optimise": ("seat_yaw", "cab_start"), "lead_in": "1.5", "lead_out": "2"}
+    assert reduction_settings(values) == (
+        "reduction.optimise=[seat_yaw, cab_start]",
+        "reduction.lead_in_s=1.5",
+        "reduction.lead_out_s=2",
+    )
+
+
+def test_options_of_free_joints_are_understood(invoke, small: str) -> None:
+    options = (
+        "--control free --budget 5% --budget seat_g_rms_error_g=0.1 --objective blend "
+        "--optimise seat_yaw --optimise fork_start --ends match-rates --lead-in 1.5 --lead-out 2"
+    )
+    result = invoke("validate", small, "--format", "json", *options.split())
+    facts = json.loads(result.stdout)
+    assert facts["budget"] == {"joint_deviation_relative": 0.05, "seat_g_rms_error_g": 0.1}
+    assert (facts["control"], facts["objective"], facts["ends"]) == ("free", "blend", "match-rates")
+    assert facts["optimise"] == ["seat_yaw", "fork_start"]
+    assert (facts["lead_in_s"], facts["lead_out_s"]) == (1.5, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "words"),
+    [
+        ("--budget half", 3, "joint_deviation_relative: must be a number, is 'half'"),
+        ("--budget half%", 3, "must be a number, is 'half%'"),
+        ("--budget 100%", 3, "must be below 1"),
+        ("--budget seat_g=1", 3, "seat_g"),
+        ("--lead-in -1", 3, "reduction.lead_in_s: must be at least 0"),
+        ("--lead-in soon", 3, "must be a number"),
+        ("--optimise seat_roll", 2, "seat_roll"),
+        ("--budget 5% --r2 1", 2, "instead of --r2"),
+    ],
+)
+def test_what_is_no_value(invoke, small: str, options: str, code: int, words: str) -> None:
+    result = invoke("validate", small, *options.split())
+    assert (result.exit_code, result.stdout) == (code, "")
+    assert words in result.stderr
 
 
 @pytest.mark.parametrize("weights", [{"r2": "1"}, {"tracking": "1"}])
 def test_a_budget_beside_weights_is_wrong_use(weights: dict[str, str]) -> None:
     with pytest.raises(click.UsageError, match=f"instead of --{next(iter(weights))}"):
-        reduction_settings({"budget": "0.05", **weights})
+        reduction_settings({"budget": ("0.05",), **weights})
 
 
 def test_a_matrix_in_brackets_stays_as_it_is() -> None:

@@ -15,16 +15,18 @@ import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 
+from des_cli.batch import load_job
 from des_cli.cli import sweep as module
 from des_cli.cli.tradeoff_text import point_line, points_text
 from des_cli.errors import ExitCode
 from des_cli.failure import Failure
 from des_cli.files.load import load_profile
 from des_cli.files.point_table import COLUMNS
+from des_cli.job import Job
 from des_cli.kinematics.desired import make_desired
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.model.tradeoff import TradePoint
-from des_cli.sweep import PointResult, exit_code_of
+from des_cli.sweep import PointJob, PointResult, exit_code_of, run_point
 from des_cli.tradeoff import CONSTANT_FACTORS, doubts
 
 Rows = list[dict[str, str]]
@@ -227,6 +229,49 @@ def test_numpy_is_not_imported_before_the_number_of_threads_is_set(
     assert (done.returncode, done.stdout) == (0, "False\n"), done.stderr
 
 
+def planned(invoke, monkeypatch: pytest.MonkeyPatch, *args: str) -> list[tuple]:
+    """Control, swept value and budgets of every point that a sweep would compute."""
+    jobs: list[PointJob] = []
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "_run", lambda _, points, *rest: jobs.extend(points) or ExitCode.DONE)
+        result = invoke("sweep", *args)
+    assert result.exit_code == 0, result.stderr
+    return [
+        (job.control, job.value, {b.metric: b.most for b in load_job(job.job).reduction.budget})
+        for job in jobs
+        if not job.baselines
+    ]
+
+
+RATE, G = "seat_rate_deviation_relative", "seat_g_rms_error_g"
+
+
+def test_budgets_on_other_metrics_stay_beside_the_swept_one(
+    invoke, small: str, write_profile: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    swept = ("--budgets", f"{RATE}=5%,0.2", "--controls", "free,scalar")
+    beside = [
+        (control, most, {G: 0.1, RATE: most})
+        for control in ("free", "scalar")
+        for most in (0.05, 0.2)
+    ]
+    assert planned(invoke, monkeypatch, small, *swept, "--budget", f"{G}=0.1") == beside
+    path = write_profile("felt")
+    path.write_text(path.read_text().replace("r2: 1", f"budget: {{{G}: 0.1, {RATE}: 0.9}}"))
+    assert planned(invoke, monkeypatch, path.name, *swept) == beside
+    alone = [(control, most, {RATE: most}) for control, most, _ in beside]
+    assert planned(invoke, monkeypatch, small, *swept) == alone  # it has weights
+
+
+def test_a_point_is_named_after_what_is_swept(
+    small: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("des_cli.tradeoff.trade_point", lambda *_: replace(POINT, swept=G))
+    job = PointJob(Job(str(tmp_path / small)), "scalar", RATE, 0.2)
+    [point] = run_point(job).points
+    assert (point.swept, point.value) == (RATE, 0.2)
+
+
 def test_a_profile_on_stdin(invoke, small: str, tmp_path) -> None:
     args = ("--r2s", "1", "--controls", "scalar")
     piped = invoke("sweep", "-", *args, input=(tmp_path / small).read_bytes())
@@ -291,10 +336,14 @@ def test_a_maneuver_that_cannot_be_flown_is_infeasible_with_a_reason(
         (["--budgets", "0.1,-1"], "above 0"),
         (["--r2s", "inf"], "above 0"),
         (["--budgets", "seat_rate=0.1"], "is not a metric"),
-        (["--controls", "both"], "is not scalar or per-joint"),
+        (["--controls", "both"], "is not free, scalar or per-joint"),
         (["--plot", "curve.pdf"], "FILE.png"),
         (["-o", "x.csv", "-f", "json"], "contradicts"),
-        (["--budget", "0.1"], "No such option"),
+        (["--budget", "0.1"], "joint_deviation_relative, which is swept"),
+        (["--budget", "0.1", "--r2s", "1"], "--budget and --r2s exclude"),
+        (["--budgets", "seat_g_rms_error_g=5%"], "is no share: give it in g"),
+        (["--r2s", "1", "--controls", "free"], "r2 and tracking weigh factors"),
+        (["--ends", "match-rates"], "match-rates needs control: free"),
         (["--set", "reduction.hold=[arm]"], "hold needs control: per-joint"),
     ],
     ids=lambda value: value if isinstance(value, str) else " ".join(value),

@@ -66,3 +66,30 @@ def test_stdin_twice_is_wrong_use(invoke) -> None:
     result = invoke("validate", "-", "-", input=b"")
     assert result.exit_code == 2
     assert "only once" in result.stderr
+
+
+def test_the_line_tells_budgets_ends_jerk_and_what_the_occupant_may_get(
+    invoke, write_profile
+) -> None:
+    machine = (
+        "{base: des, limits: {arm: {jerk: unlimited}}, "
+        "occupant: {gy_g: [-1, 1], gz_g: [null, 9], g_onset_g_s: 6}}"
+    )
+    path = write_profile("free", machine=machine, control="free", axes="seat")
+    path.write_text(path.read_text().replace("r2: 1", "optimise: [seat_yaw, cab_start]"))
+    result = invoke("validate", path.name, "--lead-out", "2")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert result.stdout.strip().endswith(
+        "free, seat axes, seat_g_rms_error_g at most 0.05, seat_rate_deviation_relative at most "
+        "0.1, optimise seat_yaw and cab_start, ends match-start, lead_out 2 s, limits warn, "
+        "jerk limits unlimited, 5, 10 rad/s^3, gy_g -1 to 1, gz_g at most 9, g_onset_g_s at most 6"
+    )
+    facts = json.loads(invoke("validate", path.name, "--format", "json").stdout)
+    assert facts["jerk_limit_rad_s3"] == {"arm": None, "fork": 5.0, "cab": 10.0}
+    assert facts["occupant"] == {"gy_g": [-1.0, 1.0], "gz_g": [None, 9.0], "g_onset_g_s": 6.0}
+
+
+def test_what_excludes_each_other_is_wrong_use(invoke, small: str) -> None:
+    result = invoke("validate", small, "--objective", "felt", "--optimise", "seat_yaw")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.count("needs control: free") == 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from des_cli.errors import FileAccessError, ProfileError, UsageError
+from des_cli.files.builtin import builtin_profiles
 from des_cli.files.load import load_profile
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
@@ -92,13 +94,21 @@ reduction: {method: zero, algorithm: report-sweep, control: per-joint, axes: rep
     np.testing.assert_array_equal(found.tracking, [0.5, 0.5, 0.5])
 
 
+FELT = (Budget("seat_g_rms_error_g", 0.05), Budget("seat_rate_deviation_relative", 0.1))
+
+
 @pytest.mark.parametrize(
     ("section", "budget"),
     [
-        ("", (Budget("joint_deviation_relative", 0.05),)),
-        ("{axes: report}", (Budget("joint_deviation_relative", 0.05),)),
+        ("", FELT),
+        ("{axes: report}", FELT),
+        ("{control: scalar}", FELT),
         ("{budget: 0.1}", (Budget("joint_deviation_relative", 0.1),)),
         ("{budget: {seat_g_rms_error_g: 0.2}}", (Budget("seat_g_rms_error_g", 0.2),)),
+        (
+            "{budget: {attitude_error_max_deg: 5, seat_g_rms_error_g: 0.2}}",
+            (Budget("attitude_error_max_deg", 5.0), Budget("seat_g_rms_error_g", 0.2)),
+        ),
         ("{budget: 0.1, algorithm: report-sweep}", (Budget("joint_deviation_relative", 0.1),)),
         ("{r2: 1}", ()),
         ("{tracking: 1}", ()),
@@ -109,6 +119,65 @@ reduction: {method: zero, algorithm: report-sweep, control: per-joint, axes: rep
 def test_weights_and_methods_without_a_budget_have_none(section: str, budget: tuple) -> None:
     text = SMALL + (f"reduction: {section}\n" if section else "")
     assert load(text).reduction.budget == budget
+
+
+def test_a_silent_profile_is_fit_to_fly() -> None:
+    found = load(SMALL).reduction
+    words = (found.control, found.axes, found.limits, found.ends, found.objective, found.optimise)
+    assert words == ("free", "seat", "enforce", "match-start", "coriolis", ())
+    np.testing.assert_array_equal(found.r1, np.diag([2, 2, 2]))
+    assert (found.lead_in, found.lead_out) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("section", "control", "ends"),
+    [
+        ("{r2: 1}", "scalar", "free"),
+        ("{tracking: 1}", "scalar", "free"),
+        ("{algorithm: report-sweep}", "scalar", "free"),
+        ("{method: zero}", "per-joint", "free"),
+        ("{method: zero, r2: 1}", "per-joint", "free"),
+        ("{r2: 1, control: per-joint, ends: match-start}", "per-joint", "match-start"),
+        ("{method: zero, control: scalar}", "scalar", "free"),
+        ("{budget: 0.05}", "free", "match-start"),
+        ("{budget: 0.05, control: scalar}", "scalar", "match-start"),
+        ("{axes: report}", "free", "match-start"),
+    ],
+)
+def test_the_problem_of_the_study_has_its_own_defaults(
+    section: str, control: str, ends: str
+) -> None:
+    found = load(f"{SMALL}reduction: {section}\n").reduction
+    assert (found.control, found.ends) == (control, ends)
+
+
+def test_what_only_free_joints_can_do_reaches_the_model() -> None:
+    section = """\
+reduction: {objective: blend, optimise: [cab_start, seat_yaw], ends: match-rates,
+  lead_in_ms: 2500, lead_out_min: 0.05}
+"""
+    found = load(SMALL + section).reduction
+    assert (found.objective, found.ends) == ("blend", "match-rates")
+    assert found.optimise == ("cab_start", "seat_yaw")
+    assert (found.lead_in, found.lead_out) == (2.5, 3.0)
+
+
+@pytest.mark.parametrize("name", ["cobra", "cobra_table3"])
+def test_the_cobras_stay_the_problem_of_the_study(name: str) -> None:
+    found = load_profile(name).reduction
+    words = (found.method, found.algorithm, found.control, found.axes, found.ends, found.limits)
+    assert words == ("minimum", "optimum", "scalar", "report", "free", "warn")
+    assert found.budget == ()
+
+
+def test_every_other_built_in_profile_leaves_its_reduction_to_the_defaults() -> None:
+    others = [p.name for p in builtin_profiles() if not p.name.startswith("cobra")]
+    assert len(others) > 5
+    default = Reduction()
+    for name in others:
+        found = load_profile(name).reduction
+        for field in fields(Reduction):
+            np.testing.assert_array_equal(getattr(found, field.name), getattr(default, field.name))
 
 
 def test_any_unit_of_the_table_gives_the_same_profile() -> None:
@@ -212,9 +281,22 @@ body_rates: {p_deg_s: "exp(t)", q_rad_s: 0.5, r_rpm: [{from_s: 0, to_s: 1, value
         ("name: small", "reduction: {budget: 0}", "2:21: reduction.budget", "greater than 0"),
         ("name: small", "reduction: {budget: {g: 1}}", "2:22: reduction.budget.g", "must be joint"),
         ("name: small", "reduction: {budget: {}}", "2:21: reduction.budget", "at least 1 items"),
-        ("name: small", "reduction: {budget: [1]}", "2:21: reduction.budget", "or one metric"),
+        ("name: small", "reduction: {budget: [1]}", "2:21: reduction.budget", "or metrics with"),
         ("name: small", "reduction: {budget: {seat_g_rms_error_g: 1, joint_deviation_relative: 1}}",
-         "2:21: reduction.budget", "at most 1 items"),
+         "2:71: reduction.budget.joint_deviation_relative", "must be below 1"),
+        ("name: small", "reduction: {budget: 1}", "2:21: reduction.budget", "must be below 1"),
+        ("name: small", "reduction: {objective: feel}", "2:24: reduction.objective",
+         "must be coriolis, blend or felt"),
+        ("name: small", "reduction: {optimise: [seat_roll]}", "2:24: reduction.optimise[0]",
+         "must be seat_yaw, seat_pitch, fork_start or cab_start"),
+        ("name: small", "reduction: {optimise: [seat_yaw, seat_yaw]}",
+         "2:34: reduction.optimise[1]", "names seat_yaw twice"),
+        ("name: small", "reduction: {ends: match-end}", "2:19: reduction.ends",
+         "must be free, match-start, match-rates or match-both"),
+        ("name: small", "reduction: {lead_in: 2}", "2:13: reduction.lead_in", "needs its unit"),
+        ("name: small", "reduction: {lead_in_s: 2, lead_in_ms: 2}", "2:12: reduction",
+         "is given twice"),
+        ("name: small", "reduction: {lead_out_s: -2}", "2:25: reduction.lead_out_s", "at least 0"),
         ("name: small", "reduction: {budget: 1, r2: 1, tracking: 1}", "2:21: reduction.budget",
          "stands instead of r2 and tracking"),
         ("name: small", "reduction: {tolerance: 0}", "2:24: reduction.tolerance", "greater than 0"),

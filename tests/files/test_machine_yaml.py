@@ -10,7 +10,7 @@ from ruamel.yaml import YAML
 
 from des_cli.errors import ProfileError
 from des_cli.files.machine_yaml import machine_mapping, parse_machine
-from des_cli.model.machine import DHRow, JointLimits, Machine
+from des_cli.model.machine import DHRow, JointLimits, Machine, OccupantBounds
 from des_cli.model.machines import DES, gimballed_centrifuge_rows
 from des_cli.units import FOOT_M
 
@@ -44,7 +44,7 @@ def test_a_base_is_changed_where_something_is_said() -> None:
     assert machine.name == "mine"
     assert machine.rows == DES.rows
     assert machine.gravity == 9.81
-    assert machine.limits == (DES.limits[0], JointLimits(2 * math.pi, math.pi / 2, 2.5),
+    assert machine.limits == (DES.limits[0], JointLimits(2 * math.pi, math.pi / 2, 2.5, 5.0),
                               DES.limits[2])  # fmt: skip
 
 
@@ -62,9 +62,10 @@ def test_a_machine_of_its_own_lengths_and_limits() -> None:
     machine = parse_machine(text, "m.yaml")
     assert machine.rows == gimballed_centrifuge_rows(machine.lengths)
     arm, fork, cab = machine.limits
-    assert arm == JointLimits(math.inf, math.pi, math.pi / 2)
-    assert fork == JointLimits(math.pi, 3, 2)
-    assert cab == JointLimits(4, math.pi, 1)
+    # nothing is said of the jerk: 2 1/s times the acceleration
+    assert arm == JointLimits(math.inf, math.pi, math.pi / 2, math.pi)
+    assert fork == JointLimits(math.pi, 3, 2, 4)
+    assert cab == JointLimits(4, math.pi, 1, 2)
     assert machine.gravity == DES.gravity
 
 
@@ -81,7 +82,37 @@ def test_rows_are_read_as_written() -> None:
     )
 
 
-@pytest.mark.parametrize("text", ["{base: des}", LIMITS + ROWS])
+def test_jerk_is_given_in_either_unit_or_switched_off() -> None:
+    text = (
+        LIMITS.replace("rpm: 30,", "rpm: 30, jerk_rad_s3: 3,")
+        .replace("rate_rad_s: 3,", "rate_rad_s: 3, jerk_deg_s3: 90,")
+        .replace("rate_deg_s: 180,", "rate_deg_s: 180, jerk: unlimited,")
+    )
+    limits = parse_machine(text + ROWS, "m.yaml").limits
+    assert [each.jerk for each in limits] == [3.0, pytest.approx(math.pi / 2), math.inf]
+    based = parse_machine("{base: des, limits: {cab: {jerk: unlimited}}}", "m.yaml")
+    assert [each.jerk for each in based.limits] == [*(e.jerk for e in DES.limits[:2]), math.inf]
+
+
+def test_occupant_bounds_are_read_one_by_one() -> None:
+    assert parse_machine("{base: des}", "m.yaml").occupant == OccupantBounds()
+    text = """\
+base: des
+occupant: {gx_g: [-4, 8], gy_g: [-1.5, 1.5], gz_g: [null, 9], g_onset_g_s: 6,
+  seat_angular_acceleration_deg_s2: 180}
+"""
+    found = parse_machine(text, "m.yaml").occupant
+    assert found == OccupantBounds((-4, 8), (-1.5, 1.5), (-math.inf, 9), 6, math.pi)
+
+
+OCCUPANT = """\
+occupant: {gx_g: [-4.1, null], gy_g: [-1.3, 1.7], g_onset_g_s: 5.9,
+  seat_angular_acceleration_rad_s2: 0.7}
+"""
+NO_JERK = LIMITS.replace("angle_rad: 4", "angle_rad: 4, jerk: unlimited")
+
+
+@pytest.mark.parametrize("text", ["{base: des}", LIMITS + ROWS, NO_JERK + ROWS + OCCUPANT])
 def test_a_machine_that_is_shown_reads_back_bit_for_bit(text: str) -> None:
     machine: Machine = DES if "base" in text else parse_machine(text, "m.yaml")
     stream = io.StringIO()
@@ -106,6 +137,20 @@ def test_a_machine_that_is_shown_reads_back_bit_for_bit(text: str) -> None:
         ("{base: des, lengths_ft: {L22: 1}}", "lengths_ft.L22", "did you mean L2?"),
         ("{base: des, lengths_yd: {L2: 1}}", "lengths_yd", "needs its unit in the key: lengths_m"),
         ("{base: des, lengths_ft: {L2: 1}, lengths_m: {L2: 1}}", "m.yaml", "is given twice"),
+        (LIMITS.replace("rpm: 30", "rpm: 30, jerk: 3") + ROWS, "limits.arm.jerk", "be unlimited"),
+        (LIMITS.replace("rpm: 30", "rpm: 30, jerk_s3: 3") + ROWS, "limits.arm.jerk_s3",
+         "needs its unit in the key: jerk_rad_s3, jerk_deg_s3 or jerk"),
+        ("{base: des, limits: {arm: {jerk: unlimited, jerk_rad_s3: 2}}}", "limits.arm", "twice"),
+        ("{base: des, occupant: {gy_g: [1, -1]}}", "occupant.gy_g", "the least below the most"),
+        ("{base: des, occupant: {gy_g: [1, 1]}}", "occupant.gy_g", "the least below the most"),
+        ("{base: des, occupant: {gy_g: [null, null]}}", "occupant.gy_g", "bounds nothing"),
+        ("{base: des, occupant: {gy_g: [1]}}", "occupant.gy_g", "at least 2 items"),
+        ("{base: des, occupant: {gy_g: 1}}", "occupant.gy_g", "must be a list"),
+        ("{base: des, occupant: {gy_g: [-.inf, 1]}}", "occupant.gy_g[0]", "finite number"),
+        ("{base: des, occupant: {gy: [-1, 1]}}", "occupant.gy", "did you mean gy_g?"),
+        ("{base: des, occupant: {g_onset_g_s: 0}}", "occupant.g_onset_g_s", "greater than 0"),
+        ("{base: des, occupant: {seat_angular_acceleration: 1}}",
+         "occupant.seat_angular_acceleration", "needs its unit in the key"),
         ("{base: des, gravity_g: 0}", "gravity_g", "must be greater than 0"),
         (LIMITS + ROWS.replace("theta: cab", "theta: cba"), "rows[3].theta", "must be arm, fork"),
         (LIMITS + ROWS.replace("theta: cab", "theta: cab pi"), "rows[3].theta", "their sum"),

@@ -44,6 +44,38 @@ def test_a_budget_and_weights_replace_each_other() -> None:
     assert changed(budget, *weights)["reduction"] == {"r2": 0.2, "tracking": 3}
 
 
+def test_a_budget_joins_those_on_other_metrics() -> None:
+    one = "reduction.budget.seat_g_rms_error_g=0.1"
+    other = "reduction.budget.seat_rate_deviation_relative=0.2"
+    both = {"seat_g_rms_error_g": 0.1, "seat_rate_deviation_relative": 0.2}
+    assert changed(one, other)["reduction"] == {"budget": both}
+    assert changed(one, other, f"{one}5")["reduction"]["budget"]["seat_g_rms_error_g"] == 0.15
+    assert changed("reduction.r2=1", one)["reduction"] == {"budget": {"seat_g_rms_error_g": 0.1}}
+    bare = {"joint_deviation_relative": 0.05, "seat_g_rms_error_g": 0.1}
+    assert changed("reduction.budget=0.05", one)["reduction"] == {"budget": bare}
+
+
+def test_a_setting_changes_the_built_in_machine_that_the_profile_names() -> None:
+    setting = "machine.limits.fork.jerk_rad_s3=3"
+    assert changed(setting)["machine"] == {"base": "des", "limits": {"fork": {"jerk_rad_s3": 3}}}
+    named = changed("machine=johnsville", setting, "machine.occupant.gy_g=[-1, 1]")["machine"]
+    assert (named["base"], named["occupant"]) == ("johnsville", {"gy_g": [-1, 1]})
+    machine = load_profile("rolling_spin", settings=[setting]).machine
+    assert [limit.jerk for limit in machine.limits] == [1.26, 3.0, 10.0]
+    with pytest.raises(ProfileError, match=r"machine is a single value \('own.yaml'\)"):
+        load_profile("rolling_spin", settings=["machine=own.yaml", setting])
+
+
+def test_a_limit_replaces_the_word_that_lifts_it_and_the_other_way_round() -> None:
+    base, fork = "machine={base: des, limits: {fork: {}}}", "machine.limits.fork"
+    number, word = f"{fork}.jerk_rad_s3=3", f"{fork}.jerk=unlimited"
+    assert changed(base, number, word)["machine"]["limits"]["fork"] == {"jerk": "unlimited"}
+    assert changed(base, word, number)["machine"]["limits"]["fork"] == {"jerk_rad_s3": 3}
+    machine = load_profile("rolling_spin", settings=[base, number, "machine.occupant.gy_g=[-1, 1]"])
+    assert machine.machine.limits[1].jerk == 3.0
+    assert machine.machine.occupant.gy == (-1.0, 1.0)
+
+
 def test_lists_are_indexed_and_other_members_stay() -> None:
     found = changed("joints.arm_rpm[1].to_s=4", "joints.arm_rpm[0]={value: 7}")
     assert found["joints"]["arm_rpm"] == [{"value": 7}, {"from_s": 5, "to_s": 4, "value": 2}]
@@ -83,7 +115,7 @@ def test_the_last_setting_wins() -> None:
         ("name=!!str 3", "tag"),
         ("joints.arm_rpm[2].to_s=3", "joints.arm_rpm has 2 items, counted from 0"),
         ("joints.arm_rpm.to_s=3", "joints.arm_rpm is a list: say which item, [0], so it has no"),
-        ("machine.base=des", "machine is a single value ('des'), so it has no base"),
+        ("initial.arm_rad.x=3", "initial.arm_rad is a single value (1), so it has no x"),
         ("seat[0]=3", "seat is not a list"),
         ("seat.\x1b[1m=3", "is not a path"),
     ],

@@ -37,7 +37,10 @@ def test_every_machine_has_a_chain_limits_and_a_source(name):
     np.testing.assert_allclose(np.linalg.norm(axes, axis=-1), 1.0, rtol=0, atol=1e-14)
     assert abs(axes[0, 2]) == 1.0  # the arm turns about the vertical
     assert all(limit.rate > 0 and limit.acceleration > 0 for limit in machine.limits)
-    assert name == "des" or "Assumed" in machine.source
+    # no source has jerk limits: half a second from no acceleration to the limit
+    assert [limit.acceleration / limit.jerk for limit in machine.limits] == [0.5] * 3
+    assert "Assumed" in machine.source
+    assert "jerk limits" in machine.source
     assert pickle.loads(pickle.dumps(machine)) == machine
 
 
