@@ -19,10 +19,10 @@ from des_cli.model.arrays import Flags, Floats
 from des_cli.model.machine import JOINTS, Machine
 from des_cli.model.motion import Motion
 from des_cli.reduction.constraints import limit_rows
-from des_cli.reduction.interior import Outcome, minimise
 from des_cli.reduction.limits import find_violations, measure_peaks
 from des_cli.reduction.rates import DesiredRates
-from des_cli.reduction.transcription import Expansion
+from des_cli.solver.interior import Outcome, minimise
+from des_cli.solver.program import Expansion
 
 TAU = 0.05
 """Time [s] that weighs a rate error against an angle error: about what the DES's

@@ -16,11 +16,11 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.solution import Solution
-from des_cli.reduction.interior import Outcome
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.report_sweep import sweep
 from des_cli.reduction.search import COARSE, TOLERANCE, Search
 from des_cli.reduction.transcription import Transcription
+from des_cli.solver.interior import Outcome
 
 # Continuation in r2: it starts where r2 outweighs the Coriolis cost by this
 # factor and goes down by at most RATIO a level.

@@ -26,43 +26,11 @@ from des_cli.kinematics.coriolis import (
 )
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.motion import Motion
-from des_cli.reduction.constraints import Rows, limit_rows
+from des_cli.reduction.constraints import limit_rows
 from des_cli.reduction.points import Points
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.rates import AdaptedRates, DesiredRates, Rates
-
-
-@dataclass(frozen=True)
-class Expansion:
-    """Cost with its first and second derivatives at one iterate.
-
-    Parameters
-    ----------
-    cost : float
-    gradient : (n, 3 + m) array
-    hessian : (n, 3 + m, 3 + m) array
-        Blocks (k, k) of the Gauss-Newton Hessian: positive semidefinite.
-    across : (n - 1, 3 + m, 3 + m) array, optional
-        Its blocks (k, k + 1), where the cost couples neighbours.
-    bend : (n, 3 + m, 3 + m) array, optional
-        What is missing to the exact Hessian.
-    """
-
-    cost: float
-    gradient: Floats
-    hessian: Floats
-    across: Floats | None = None
-    bend: Floats | None = None
-
-    def plus(self, price: float, other: Expansion) -> Expansion:
-        """Add another expansion at a price."""
-        return Expansion(
-            self.cost + price * other.cost,
-            self.gradient + price * other.gradient,
-            self.hessian + price * other.hessian,
-            _add(self.across, price, other.across),
-            _add(self.bend, price, other.bend),
-        )
+from des_cli.solver.program import Expansion, Rows
 
 
 class Measure(ABC):
@@ -324,12 +292,6 @@ class Transcription:
         """Return the size of dJ/du per unit time that the desired motion meets."""
         force = self.gradient(self.desired)[:, 3:] / self.weight[:, None]
         return float(max(np.max(np.abs(force)), np.max(self.problem.r2), 1e-12))
-
-
-def _add(one: Floats | None, price: float, other: Floats | None) -> Floats | None:
-    if other is None:
-        return one
-    return price * other if one is None else one + price * other
 
 
 def rate_products(rate: Floats) -> Floats:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from des_cli.model.arrays import Flags, Floats
-from des_cli.reduction.banded import BlockTridiagonal, is_positive_definite
+from des_cli.solver.banded import BlockTridiagonal, is_positive_definite
 
 DYNAMICS_WEIGHT = 1e6
 """Weight on the squared dynamics, relative to the problem's scale, in the test for

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import LinAlgError
 
-from des_cli.reduction.banded import BlockTridiagonal, is_positive_definite
+from des_cli.solver.banded import BlockTridiagonal, is_positive_definite
 
 
 def dense(diagonal, upper, lower):

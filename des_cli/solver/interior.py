@@ -24,11 +24,10 @@ from scipy.linalg import LinAlgError
 
 from des_cli.model.arrays import Floats
 from des_cli.model.solution import Iteration
-from des_cli.reduction.filter import Filter, Trial
-from des_cli.reduction.newton_system import NewtonSystem, transposed
-from des_cli.reduction.program import Program
-from des_cli.reduction.slacks import Side, longest_step
-from des_cli.reduction.transcription import Expansion
+from des_cli.solver.filter import Filter, Trial
+from des_cli.solver.newton_system import NewtonSystem, transposed
+from des_cli.solver.program import Expansion, Program
+from des_cli.solver.slacks import Side, longest_step
 
 # Fraction of the way to the boundary that a step may take, at the least
 # (Waechter and Biegler, eq. 8).
