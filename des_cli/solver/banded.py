@@ -2,22 +2,52 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky_banded
-from scipy.linalg.lapack import dgbtrf, dgbtrs
+from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf
 
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Flags, Floats
 
 
-class BlockTridiagonal:
-    """A block tridiagonal matrix, factorised by banded LU with partial pivoting.
+@dataclass(frozen=True)
+class Part:
+    """Like blocks at successive samples of a matrix of n by n blocks.
 
     Parameters
     ----------
-    diagonal : (n, b, b) array
-        Blocks (k, k).
-    upper, lower : (n - 1, b, b) array
-        Blocks (k, k + 1) and (k + 1, k). Entries that are zero in every block
+    values : (m, r, c) array
+        Its last two axes are rows and columns inside a block.
+    row, column : int
+        Where in the block they begin.
+    ahead : int
+        0 on the diagonal; 1 where columns belong to the next sample, -1 where rows do.
+    first : int
+        The sample of the first one: of its rows, or with ``ahead`` -1 of its columns.
+    """
+
+    values: Floats
+    row: int = 0
+    column: int = 0
+    ahead: int = 0
+    first: int = 0
+
+    def used(self) -> Flags:
+        """Return the places that are not zero in every block, (r, c)."""
+        return self.values.any(axis=0)
+
+
+class BandedLU:
+    """A banded matrix, factorised with partial pivoting.
+
+    Parameters
+    ----------
+    n, b : int
+        Number and size of the diagonal blocks.
+    parts : sequence of Part
+        What it consists of; parts do not overlap. Places that are zero in every block
         and lie outside the band of the others cost nothing.
 
     Raises
@@ -26,29 +56,24 @@ class BlockTridiagonal:
         If the matrix is singular.
     """
 
-    def __init__(self, diagonal: Floats, upper: Floats, lower: Floats) -> None:
-        n, b, _ = diagonal.shape
-        above = max(_reach(diagonal, 0), _reach(upper, b))
-        below = max(_reach(np.swapaxes(diagonal, 1, 2), 0), _reach(np.swapaxes(lower, 1, 2), b))
+    def __init__(self, n: int, b: int, parts: Sequence[Part]) -> None:
+        used = [part.used() for part in parts]
+        reaches = [_reach(part, places, b) for part, places in zip(parts, used, strict=True)]
+        below = max((reach[0] for reach in reaches), default=0)
+        above = max((reach[1] for reach in reaches), default=0)
         self._shape = (n, b)
         self._band = (below, above)
         # the first rows are room for what pivoting fills in
-        band = np.zeros((2 * below + above + 1, n * b), order="F")
-        middle = below + above
-        for i in range(b):
-            for j in range(b):
-                if -below <= j - i <= above:
-                    band[middle + i - j, j::b] = diagonal[:, i, j]
-                if b + j - i <= above:
-                    band[middle + i - j - b, b + j :: b] = upper[:, i, j]
-                if b + i - j <= below:
-                    band[middle + b + i - j, j : (n - 1) * b : b] = lower[:, i, j]
-        self._lu, self._pivots, info = dgbtrf(band, below, above, overwrite_ab=True)
+        band = np.zeros((n, b, 2 * below + above + 1))
+        for part, places in zip(parts, used, strict=True):
+            _fill(band, part, places, below + above)
+        columns = band.reshape(n * b, -1).T
+        self._lu, self._pivots, info = dgbtrf(columns, below, above, overwrite_ab=True)
         if info != 0:
             raise LinAlgError("singular matrix")
 
     def solve(self, right: Floats) -> Floats:
-        """Solve for one right-hand side, (n, b).
+        """Solve for right-hand sides, (n, b) or (n, b, s).
 
         Raises
         ------
@@ -56,40 +81,48 @@ class BlockTridiagonal:
             If the solution is not finite.
         """
         n, b = self._shape
-        solution, _ = dgbtrs(self._lu, *self._band, right.reshape(n * b), self._pivots)
+        columns = right.reshape(n * b, -1)
+        solution, _ = dgbtrs(self._lu, *self._band, columns, self._pivots)
         if not np.all(np.isfinite(solution)):
             raise LinAlgError("singular matrix")
-        return np.asarray(solution).reshape(n, b)
+        return np.asarray(solution).reshape(right.shape)
 
 
-def is_positive_definite(diagonal: Floats, upper: Floats) -> bool:
-    """Return whether a symmetric block tridiagonal matrix is positive definite.
+def is_positive_definite(n: int, b: int, parts: Sequence[Part]) -> bool:
+    """Return whether a symmetric banded matrix is positive definite.
 
     Parameters
     ----------
-    diagonal : (n, b, b) array
-        Blocks (k, k).
-    upper : (n - 1, b, b) array
-        Blocks (k, k + 1).
+    n, b : int
+        Number and size of the diagonal blocks.
+    parts : sequence of Part
+        Its lower triangle, of which what stands above the diagonal is left out.
     """
-    n, b, _ = diagonal.shape
-    above = max(b - 1, _reach(upper, b))
-    band = np.zeros((above + 1, n * b))
-    for i in range(b):
-        for j in range(b):
-            if j >= i:
-                band[above + i - j, j::b] = diagonal[:, i, j]
-            if b + j - i <= above:
-                band[above + i - j - b, b + j :: b] = upper[:, i, j]
-    try:
-        cholesky_banded(band, overwrite_ab=True, check_finite=False)
-    except LinAlgError:
-        return False
-    return True
+    used = [part.used() for part in parts]
+    below = max(_reach(part, places, b)[0] for part, places in zip(parts, used, strict=True))
+    band = np.zeros((n, b, below + 1))
+    for part, places in zip(parts, used, strict=True):
+        _fill(band, part, places & (_below(part, b) >= 0), 0)
+    return bool(dpbtrf(band.reshape(n * b, -1).T, lower=1, overwrite_ab=True)[1] == 0)
 
 
-def _reach(blocks: Floats, shift: int) -> int:
-    """Return the farthest superdiagonal on which any block has an entry."""
-    used = np.any(blocks != 0.0, axis=0) if len(blocks) else np.zeros(blocks.shape[1:], bool)
-    rows, columns = np.nonzero(used)
-    return int(np.max(columns - rows + shift, initial=0))
+def _below(part: Part, b: int) -> np.ndarray[tuple[int, int], np.dtype[np.intp]]:
+    """Return how far below the diagonal each place of a part stands, (r, c)."""
+    _, rows, columns = part.values.shape
+    row = part.row + np.arange(rows)[:, None]
+    return row - part.column - np.arange(columns) - b * part.ahead
+
+
+def _reach(part: Part, used: Flags, b: int) -> tuple[int, int]:
+    """Return how far a part reaches below and above the diagonal."""
+    below = _below(part, b)[used]
+    return int(np.max(below, initial=0)), int(np.max(-below, initial=0))
+
+
+def _fill(band: Floats, part: Part, used: Flags, diagonal: int) -> None:
+    """Write a part into the columns of a band, (n, b, height)."""
+    first = part.first + max(part.ahead, 0)
+    height = diagonal + _below(part, band.shape[1])
+    for i, j in np.argwhere(used):
+        column = band[first : first + len(part.values), part.column + j]
+        column[:, height[i, j]] = part.values[:, i, j]

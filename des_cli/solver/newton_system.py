@@ -2,14 +2,47 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from des_cli.model.arrays import Flags, Floats
-from des_cli.solver.banded import BlockTridiagonal, is_positive_definite
+from des_cli.solver.banded import BandedLU, Part, is_positive_definite
 
-DYNAMICS_WEIGHT = 1e6
-"""Weight on the squared dynamics, relative to the problem's scale, in the test for
-convexity: large against any negative curvature, small against 1e16."""
+DYNAMICS_WEIGHT = 1e3
+"""Weight on the squared dynamics in the test for convexity, relative to the problem's
+scale and times the square of the number of samples: the weakest dynamics, a drift
+over all of them, falls with that. Large against any negative curvature, and small
+enough that the rounding of what it weighs is none."""
+
+
+class Dynamics:
+    """Linearised dynamics in the unknowns that move.
+
+    Parameters
+    ----------
+    left, ahead : (n - 1, 3, w) array
+        d defect_k / d x_k and / d x_{k+1}.
+    pinned : (n, w) array of bool
+        Unknowns that do not move.
+    """
+
+    def __init__(self, left: Floats, ahead: Floats, pinned: Flags) -> None:
+        self.pinned = pinned
+        self.left, self.ahead = left, ahead
+        if np.any(pinned[:-1]):
+            self.left = left * ~pinned[:-1, None, :]
+        if np.any(pinned[1:]):
+            self.ahead = ahead * ~pinned[1:, None, :]
+
+    @cached_property
+    def squared(self) -> tuple[Floats, Floats]:
+        """Blocks (k, k) and (k + 1, k) of the squared dynamics, (n or n - 1, w, w)."""
+        turned = transposed(self.ahead)
+        at = np.zeros((len(self.left) + 1, self.left.shape[2], self.left.shape[2]))
+        at[:-1] = transposed(self.left) @ self.left
+        at[1:] += turned @ self.ahead
+        return at, turned @ self.left
 
 
 class NewtonSystem:
@@ -21,26 +54,22 @@ class NewtonSystem:
     Parameters
     ----------
     hessian : (n, w, w) array
-        Blocks (k, k).
-    across : (n - 1, w, w) array
-        Blocks (k, k + 1).
-    left, ahead : (n - 1, 3, w) array
-        d defect_k / d x_k and / d x_{k+1}.
-    pinned : (n, w) array of bool
-        Unknowns that do not move.
+        Blocks (k, k); the system takes them over.
+    across : (n - 1, w, w) array, optional
+        Blocks (k, k + 1); it takes them over too.
+    dynamics : Dynamics
     """
 
-    def __init__(
-        self, hessian: Floats, across: Floats, left: Floats, ahead: Floats, pinned: Flags
-    ) -> None:
-        self._free = free = ~pinned
-        self._left = left * free[:-1, None, :]
-        self._ahead = ahead * free[1:, None, :]
-        self._here = hessian * free[:, :, None] * free[:, None, :]
+    def __init__(self, hessian: Floats, across: Floats | None, dynamics: Dynamics) -> None:
+        self.dynamics, self._hessian, self._across = dynamics, hessian, across
+        still = dynamics.pinned
+        k = np.flatnonzero(np.any(still, axis=1))
         ends = np.arange(hessian.shape[1])
-        self._here[:, ends, ends] += pinned
-        self._across = across * free[:-1, :, None] * free[1:, None, :]
-        self._lu: BlockTridiagonal | None = None
+        hessian[k] *= (~still[k])[:, :, None] & (~still[k])[:, None, :]
+        hessian[k[:, None], ends, ends] += still[k]
+        if across is not None and len(k):
+            across *= (~still[:-1])[:, :, None] & (~still[1:])[:, None, :]
+        self._lu: BandedLU | None = None
 
     def is_convex(self, size: float) -> bool:
         """Return whether the Hessian is positive definite on the linearised dynamics.
@@ -50,13 +79,14 @@ class NewtonSystem:
         size : float
             Typical size of the Hessian's blocks.
         """
-        weight = DYNAMICS_WEIGHT * size
-        squared = self._here.copy()
-        squared[:-1] += weight * transposed(self._left) @ self._left
-        squared[1:] += weight * transposed(self._ahead) @ self._ahead
-        return is_positive_definite(
-            squared, self._across + weight * transposed(self._left) @ self._ahead
-        )
+        n, width, _ = self._hessian.shape
+        weight = DYNAMICS_WEIGHT * n**2 * size
+        at, behind = self.dynamics.squared
+        below = weight * behind
+        if self._across is not None:
+            below += transposed(self._across)
+        parts = (Part(self._hessian + weight * at), Part(below, ahead=-1))
+        return is_positive_definite(n, width, parts)
 
     def solve(self, force: Floats, defect: Floats) -> tuple[Floats, Floats]:
         """Return the step in x, (n, w), and the new multipliers, (n - 1, 3).
@@ -66,27 +96,30 @@ class NewtonSystem:
         LinAlgError
             If the system is singular.
         """
-        n, width = self._free.shape
+        n, width, _ = self._hessian.shape
         if self._lu is None:
             self._lu = self._factorise()
         right = np.zeros((n, width + 3))
-        right[:, :width] = -force * self._free
+        right[:, :width] = -force
+        right[:, :width][self.dynamics.pinned] = 0.0
         right[:-1, width:] = -defect
         solution = self._lu.solve(right)
         return solution[:, :width], solution[:-1, width:]
 
-    def _factorise(self) -> BlockTridiagonal:
-        n, width = self._free.shape
-        block = width + 3
-        diagonal = np.zeros((n, block, block))
-        upper, lower = np.zeros((n - 1, block, block)), np.zeros((n - 1, block, block))
-        diagonal[:, :width, :width] = self._here
-        diagonal[:-1, width:, :width] = self._left
-        diagonal[:-1, :width, width:] = transposed(self._left)
-        diagonal[-1, width:, width:] = np.eye(3)  # the last sample begins no interval
-        upper[:, :width, :width], lower[:, :width, :width] = self._across, transposed(self._across)
-        upper[:, width:, :width], lower[:, :width, width:] = self._ahead, transposed(self._ahead)
-        return BlockTridiagonal(diagonal, upper, lower)
+    def _factorise(self) -> BandedLU:
+        n, width, _ = self._hessian.shape
+        left, ahead = self.dynamics.left, self.dynamics.ahead
+        parts = [
+            Part(self._hessian),
+            Part(left, row=width),
+            Part(transposed(left), column=width),
+            Part(np.eye(3)[None], width, width, first=n - 1),  # the last begins no interval
+            Part(ahead, row=width, ahead=1),
+            Part(transposed(ahead), column=width, ahead=-1),
+        ]
+        if self._across is not None:
+            parts += [Part(self._across, ahead=1), Part(transposed(self._across), ahead=-1)]
+        return BandedLU(n, width + 3, parts)
 
 
 def transposed(blocks: Floats) -> Floats:
