@@ -108,9 +108,10 @@ def _coarse_start(
     problem: Problem, grid: Transcription, metric: MetricKey, budget: float, search: Search
 ) -> tuple[float, Floats] | None:
     """Return price and iterate that a coarser grid finds, or None without one."""
-    coarse = coarsen(problem)
-    if coarse is None:
+    every = len(problem.desired.t) // 250
+    if every < 2:
         return None
+    coarse = coarsen(problem, every)
     rough = Transcription(coarse)
     found = _search_price(rough, measure_of(rough, metric, budget), search, None)
     return found.price, refine(found.outcome.x, coarse, grid)

@@ -26,6 +26,7 @@ from des_cli.reduction.points import Points
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.rates import AdaptedRates, DesiredRates, Rates
 from des_cli.solver.program import Expansion, Rows
+from des_cli.study.backward_forward import follow
 
 
 class Measure(ABC):
@@ -155,10 +156,7 @@ class Transcription:
 
     def follow(self, control: Floats) -> Floats:
         """Integrate factors (n, m) to an iterate on the dynamics of the desired Jacobian."""
-        x = np.hstack([self.problem.desired.angle, control])
-        made = -self.defect(x) + np.diff(x[:, :3], axis=0)
-        x[1:, :3] = x[0, :3] + np.cumsum(made, axis=0)
-        return x
+        return np.hstack([follow(self.problem.desired, control).angle, control])
 
     # ------------------------------------------------------------------ cost
     def coriolis(self, x: Floats) -> Floats:

@@ -11,6 +11,9 @@ from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf
 
 from des_cli.model.arrays import Flags, Floats
 
+BLOCK = 512
+"""Samples written at a time: their columns stay in a core's cache."""
+
 
 @dataclass(frozen=True)
 class Part:
@@ -65,8 +68,7 @@ class BandedLU:
         self._band = (below, above)
         # the first rows are room for what pivoting fills in
         band = np.zeros((n, b, 2 * below + above + 1))
-        for part, places in zip(parts, used, strict=True):
-            _fill(band, part, places, below + above)
+        _fill(band, parts, used, below + above)
         columns = band.reshape(n * b, -1).T
         self._lu, self._pivots, info = dgbtrf(columns, below, above, overwrite_ab=True)
         if info != 0:
@@ -101,8 +103,8 @@ def is_positive_definite(n: int, b: int, parts: Sequence[Part]) -> bool:
     used = [part.used() for part in parts]
     below = max(_reach(part, places, b)[0] for part, places in zip(parts, used, strict=True))
     band = np.zeros((n, b, below + 1))
-    for part, places in zip(parts, used, strict=True):
-        _fill(band, part, places & (_below(part, b) >= 0), 0)
+    lower = [w & (_below(part, b) >= 0) for part, w in zip(parts, used, strict=True)]
+    _fill(band, parts, lower, 0)
     return bool(dpbtrf(band.reshape(n * b, -1).T, lower=1, overwrite_ab=True)[1] == 0)
 
 
@@ -119,10 +121,17 @@ def _reach(part: Part, used: Flags, b: int) -> tuple[int, int]:
     return int(np.max(below, initial=0)), int(np.max(-below, initial=0))
 
 
-def _fill(band: Floats, part: Part, used: Flags, diagonal: int) -> None:
-    """Write a part into the columns of a band, (n, b, height)."""
-    first = part.first + max(part.ahead, 0)
-    height = diagonal + _below(part, band.shape[1])
-    for i, j in np.argwhere(used):
-        column = band[first : first + len(part.values), part.column + j]
-        column[:, height[i, j]] = part.values[:, i, j]
+def _fill(band: Floats, parts: Sequence[Part], used: Sequence[Flags], diagonal: int) -> None:
+    """Write parts into the columns of a band, (n, b, height), some samples at a time."""
+    places = [
+        [(i, j, diagonal + _below(part, band.shape[1])[i, j]) for i, j in np.argwhere(where)]
+        for part, where in zip(parts, used, strict=True)
+    ]
+    for start in range(0, len(band), BLOCK):
+        for part, each in zip(parts, places, strict=True):
+            shift = part.first + max(part.ahead, 0)
+            first = max(start, shift)
+            values = part.values[first - shift : start + BLOCK - shift]
+            columns = band[first : first + len(values), part.column :]
+            for i, j, height in each:
+                columns[:, j, height] = values[:, i, j]

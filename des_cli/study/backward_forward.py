@@ -63,3 +63,28 @@ def factors_of(desired: Motion, adjoint: Floats, r2: Floats) -> Floats:
     if len(r2) == 1:
         power = power.sum(axis=1, keepdims=True)
     return np.asarray(1.0 - power / r2)
+
+
+def follow(desired: Motion, factors: Floats) -> Motion:
+    """Integrate (46) forward: the motion of factors on the rates of a desired one.
+
+    Parameters
+    ----------
+    desired : Motion
+    factors : (n, m) array
+        Linear between samples; m = 1 for one factor of all rates, or 3.
+
+    Returns
+    -------
+    Motion
+        Ones return the desired motion, but for the arm's angle where that is not what
+        its rates integrate to: the arm is commanded by its velocity.
+    """
+    first, last = factors[:-1], factors[1:]
+    start, end = first * desired.rate_start, last * desired.rate_end
+    half = 0.5 * desired.step[:, None]
+    missed = np.diff(desired.angle, axis=0) - half * (desired.rate_start + desired.rate_end)
+    missed[:, 0] = 0.0
+    moved = half * (start + end) + 0.5 * (first + last) * missed
+    angle = np.vstack([desired.angle[:1], desired.angle[0] + np.cumsum(moved, axis=0)])
+    return Motion(desired.t, angle, start, end)
