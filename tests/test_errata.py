@@ -17,15 +17,15 @@ from des_cli.kinematics.chain import chain_of, joint_axes, linear_jacobian, seat
 from des_cli.kinematics.coriolis import coriolis, coriolis_derivatives
 from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.orientation import body_jacobian, smallest_singular_value
-from des_cli.kinematics.report_forms import (
+from des_cli.model.machine import Seat
+from des_cli.model.machines import DES
+from des_cli.model.run import Run
+from des_cli.study.closed_forms import (
     closed_form_coriolis,
     closed_form_transform,
     report_jacobian,
     seat_turn,
 )
-from des_cli.model.machine import Seat
-from des_cli.model.machines import DES
-from des_cli.model.run import Run
 
 SEAT = Seat(np.pi / 2, 0.0)
 CHAIN = chain_of(DES, SEAT)

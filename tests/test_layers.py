@@ -13,6 +13,7 @@ LAYERS = (
     ("errors", "units"),
     ("model",),
     ("kinematics",),
+    ("solver", "study"),
     ("reduction",),
     ("results", "metrics", "notices", "pipeline", "tradeoff"),
     ("files", "plots", "report"),
@@ -76,5 +77,13 @@ def test_every_module_that_solves_is_in_the_architecture() -> None:
     table = page.partition("## How a problem is solved")[2].partition("\n\n**")[0]
     rows = re.findall(r"^\| (`.+?) \|", table, re.M)
     named = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
-    modules = {path.stem for path in (ROOT / "reduction").glob("*.py")} - {"__init__"}
-    assert set(named) - {"reduction"} == modules
+    rooms = ("solver", "study", "reduction")
+    modules = {path.stem for room in rooms for path in (ROOT / room).glob("*.py")} - {"__init__"}
+    assert set(named) - set(rooms) == modules
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "solver").glob("*.py")), ids=lambda p: p.name)
+def test_the_solver_knows_no_centrifuge(path: Path) -> None:
+    allowed = ("des_cli.model.arrays", "des_cli.model.solution", "des_cli.solver")
+    inside = [n for n in imports(ast.parse(path.read_text())) if n.startswith("des_cli")]
+    assert [name for name in inside if not name.startswith(allowed)] == []

@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from des_cli.kinematics.report_forms import closed_form_coriolis, closed_form_transform
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.profile import BodyRates, JointCommands, Profile, Reduction
 from des_cli.pipeline import reduce_profile
 from des_cli.results.felt import tilt_error
+from des_cli.study.closed_forms import closed_form_coriolis, closed_form_transform
 
 JOINTS = ("arm", "fork", "cab")
 WEIGHTS = Reduction(axes="seat", limits="warn", budget=())

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from des_cli.kinematics.chain import Chain
-from des_cli.kinematics.state_report import StateReport
 from des_cli.model.machine import DHRow, JointLimits, Seat
 from des_cli.model.motion import Motion
 from des_cli.model.response import Response
+from des_cli.study.state import StateReport
 
 ROOT = Path(__file__).parents[1]
 THEORY = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
@@ -53,7 +53,7 @@ def test_names_in_code_exist() -> None:
     """``module.function`` and ``Class.field`` of the tables."""
     modules = {
         path.stem: ".".join(path.relative_to(ROOT).with_suffix("").parts)
-        for folder in ("kinematics", "model")
+        for folder in ("model", "kinematics", "study")
         for path in (ROOT / "des_cli" / folder).glob("*.py")
     } | {"units": "des_cli.units"}
     fields = set(StateReport.__dataclass_fields__)

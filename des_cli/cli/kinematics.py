@@ -80,7 +80,7 @@ def _state(si: Mapping[tuple[str, str], float], choice: str, form: str) -> bytes
     from des_cli.cli.state_text import state_text
     from des_cli.files.machine_file import load_machine
     from des_cli.files.state_tables import encode_state
-    from des_cli.kinematics.state_report import report_states
+    from des_cli.study.state import report_states
 
     machine = load_machine(choice, "--machine")
     default = Seat()
@@ -107,7 +107,7 @@ def _motion(
     from des_cli.cli.state_text import motion_text
     from des_cli.files.state_tables import encode_states
     from des_cli.kinematics.desired import make_desired
-    from des_cli.kinematics.state_report import report_motion
+    from des_cli.study.state import report_motion
 
     stdin = read_stdin((source,)) if source == STANDARD_STREAM else None
     profile = load_job(Job(source, settings=settings, columns=columns, stdin=stdin))

@@ -10,8 +10,8 @@ from des_cli.model.machine import JOINTS, Machine, Seat
 
 if TYPE_CHECKING:
     from des_cli.files.state_tables import Quantity
-    from des_cli.kinematics.state_report import StateReport
     from des_cli.model.arrays import Floats
+    from des_cli.study.state import StateReport
 
 WIDTH = 14
 """Of a column of numbers."""

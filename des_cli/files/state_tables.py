@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from itertools import product
 
 from des_cli.files.tables import SEAT_PARTS, TableFormat, encode_table
-from des_cli.kinematics.state_report import StateReport
 from des_cli.model.arrays import Floats
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
+from des_cli.study.state import StateReport
 
 GROUND, SEAT, FIRST = ("i0", "j0", "k0"), ("x", "y", "z"), ("1", "2", "3")
 PARTS = (*SEAT_PARTS, "total")

@@ -57,7 +57,7 @@ def coriolis_pairs_gradient(chain: Chain, angles: Floats, axes: Axes) -> Floats:
 
 def coriolis_pairs_hessian(chain: Chain, angles: Floats, axes: Axes) -> Floats:
     """Return the second partials of ``coriolis_pairs``, (..., 3 angle, 3 angle, 3 pair, 3)."""
-    return _forms(chain, axes).hessian(angles)
+    return _forms(chain, axes).gradient.gradient()(angles)
 
 
 def coriolis(chain: Chain, angles: Floats, rates: Floats, axes: Axes) -> Floats:
@@ -103,6 +103,48 @@ def coriolis_derivatives(
     return c, dc_dangle, dc_drate
 
 
+def coriolis_curvature(
+    chain: Chain, angles: Floats, rates: Floats, weight: Floats, axes: Axes
+) -> tuple[Floats, Floats, Floats]:
+    """Return the second derivatives of ``weight . c`` in angles and rates.
+
+    Parameters
+    ----------
+    chain : Chain
+    angles, rates, weight : (n, 3) array
+        [rad], [rad/s], and one factor for each component.
+    axes : {"report", "seat"}
+
+    Returns
+    -------
+    angle_angle, angle_rate, rate_rate : (n, 3, 3) array
+        The first two have the angles first; ``angle_rate`` is no symmetric matrix.
+    """
+    forms = _forms(chain, axes)
+    n = len(angles)
+    angle_angle, angle_rate = np.empty((n, 3, 3)), np.empty((n, 3, 3))
+    rate_rate = np.zeros((n, 3, 3))
+    for start in range(0, n, BLOCK):
+        block = slice(start, start + BLOCK)
+        functions = basis(angles[block], forms.pairs.joints)
+        heavy, fast = (np.ascontiguousarray(v[block].T) for v in (weight, rates))
+        by_weight = (functions[:, None] * heavy).reshape(-1, heavy.shape[1])
+        values = forms.from_weights.T @ by_weight
+        along, turned, bent = values[:3], values[3:12].reshape(3, 3, -1), values[12:]
+        for pair, (j, k) in enumerate(PAIRS):
+            rate_rate[block, j, k] = rate_rate[block, k, j] = along[pair]
+        for angle in range(3):
+            with_arm_fork, with_arm_cab, with_fork_cab = turned[angle]
+            angle_rate[block, angle, 0] = with_arm_fork * fast[1] + with_arm_cab * fast[2]
+            angle_rate[block, angle, 1] = with_arm_fork * fast[0] + with_fork_cab * fast[2]
+            angle_rate[block, angle, 2] = with_arm_cab * fast[0] + with_fork_cab * fast[1]
+        products = np.stack([fast[j] * fast[k] for j, k in PAIRS])
+        second = (bent.reshape(6, 3, -1) * products).sum(axis=1)
+        for which, (a, b) in enumerate(_ANGLE_PAIRS):
+            angle_angle[block, a, b] = angle_angle[block, b, a] = second[which]
+    return angle_angle, angle_rate, rate_rate
+
+
 def angular_acceleration_split(
     chain: Chain, angles: Floats, rates: Floats, accelerations: Floats, axes: Axes
 ) -> tuple[Floats, Floats]:
@@ -131,14 +173,19 @@ class _Forms:
 
     ``from_products`` (b * 3, 3 + 9) and ``from_rates`` (b * 3, 9) turn the b
     basis functions times the pairs' rate products, or times the rates, into
-    [c, dc_dangle] and dc_drate.
+    [c, dc_dangle] and dc_drate. ``from_weights`` (b * 3, 3 + 9 + 18) turns them
+    times weights on c into the weighted pairs, their derivatives in the angles, and
+    the second ones in the order of ``_ANGLE_PAIRS``.
     """
 
     pairs: TrigPolynomial
     gradient: TrigPolynomial
-    hessian: TrigPolynomial
     from_products: Floats
     from_rates: Floats
+    from_weights: Floats
+
+
+_ANGLE_PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
 @lru_cache(maxsize=64)
@@ -158,12 +205,19 @@ def _forms(chain: Chain, axes: Axes) -> _Forms:
     rate = np.zeros((len(value), 3, 3, 3))  # basis, rate of the partner, component, rate
     for pair, (j, k) in enumerate(PAIRS):
         rate[:, k, :, j] = rate[:, j, :, k] = value[:, pair]
+    curve = gradient.gradient().coefficient[used].reshape(-1, 3, 3, 3, 3)
+    first, second = np.transpose(_ANGLE_PAIRS)
+    columns = (  # basis and component first, then the columns
+        value.transpose(0, 2, 1),
+        slope.transpose(0, 3, 1, 2),
+        curve[:, first, second].transpose(0, 3, 1, 2),
+    )
     return _Forms(
         pairs=pairs,
         gradient=gradient,
-        hessian=gradient.gradient(),
         from_products=np.hstack([value.reshape(-1, 3), slope.transpose(0, 2, 3, 1).reshape(-1, 9)]),
         from_rates=rate.reshape(-1, 9),
+        from_weights=np.hstack([each.reshape(3 * len(value), -1) for each in columns]),
     )
 
 

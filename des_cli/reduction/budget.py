@@ -16,12 +16,12 @@ from des_cli.model.arrays import Floats
 from des_cli.model.metric import MetricKey
 from des_cli.model.solution import Solution
 from des_cli.reduction.coarse import coarsen, refine
-from des_cli.reduction.interior import Outcome
 from des_cli.reduction.measures import measure_of
 from des_cli.reduction.optimum import FAR, NEAR, make_solution
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.search import TOLERANCE, Search
 from des_cli.reduction.transcription import Measure, Transcription
+from des_cli.solver.interior import Outcome
 
 REGULARISATION = 2e-3
 """Weight on (1 - u)^2 beside a budget, relative to the mean of the desired motion's
@@ -108,9 +108,10 @@ def _coarse_start(
     problem: Problem, grid: Transcription, metric: MetricKey, budget: float, search: Search
 ) -> tuple[float, Floats] | None:
     """Return price and iterate that a coarser grid finds, or None without one."""
-    coarse = coarsen(problem)
-    if coarse is None:
+    every = len(problem.desired.t) // 250
+    if every < 2:
         return None
+    coarse = coarsen(problem, every)
     rough = Transcription(coarse)
     found = _search_price(rough, measure_of(rough, metric, budget), search, None)
     return found.price, refine(found.outcome.x, coarse, grid)

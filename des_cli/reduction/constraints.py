@@ -9,44 +9,16 @@ angle's bound is drawn in by the most that its parabola can bulge.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-
 import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Machine
-from des_cli.reduction.points import Indices
 from des_cli.reduction.rates import Rates
+from des_cli.solver.program import Rows
 
 MARGIN = 1e-6
 """Relative distance that the solver keeps from a machine limit: room for the rounding of
 whoever differentiates a table of positions twice."""
-
-
-class Rows(ABC):
-    """Many inequalities ``-1 <= value(x) <= 1``, each local in time.
-
-    Parameters
-    ----------
-    node : (q,) int array
-        The sample k that each group of inequalities belongs to; it may also
-        depend on sample k + 1.
-    """
-
-    def __init__(self, node: Indices) -> None:
-        self.node = node
-
-    @abstractmethod
-    def value(self, x: Floats) -> Floats:
-        """Return the values, (q, r)."""
-
-    @abstractmethod
-    def jacobian(self, x: Floats) -> tuple[Floats, Floats | None]:
-        """Return d value / d x_k and, or None, d value / d x_{k+1}; (q, r, 3 + m)."""
-
-    def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
-        """Return multiplier' d2 value / dx dx, blocks (k, k), (n, 3 + m, 3 + m), or None."""
-        return None
 
 
 class AngleRows(Rows):

@@ -11,7 +11,8 @@ import numpy as np
 from des_cli.kinematics.chain import Chain
 from des_cli.model.arrays import Floats
 from des_cli.model.metric import MetricKey
-from des_cli.reduction.transcription import Expansion, Measure, Transcription
+from des_cli.reduction.transcription import Measure, Transcription
+from des_cli.solver.program import Expansion
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
 

@@ -4,23 +4,26 @@ Small weights r2 have worse local minima beside the best one. The way there is a
 continuation: from a weight so large that the desired motion itself is nearly
 optimal, down to the one asked for. The desired motion and the study's sweep are
 starts too, so that the result is never above either, and per joint the scalar
-optimum is one.
+optimum is one. All this happens on the coarsest grid; only the best minimum is
+followed to the finer ones.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.solution import Solution
-from des_cli.reduction.interior import Outcome
+from des_cli.reduction.coarse import grids, refine
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.report_sweep import sweep
 from des_cli.reduction.search import COARSE, TOLERANCE, Search
 from des_cli.reduction.transcription import Transcription
+from des_cli.solver.interior import Outcome
 
 # Continuation in r2: it starts where r2 outweighs the Coriolis cost by this
 # factor and goes down by at most RATIO a level.
@@ -44,12 +47,26 @@ def find_optimum(problem: Problem, search: Search) -> Solution:
     Solution
         ``converged``, ``acceptable``, ``iteration-limit`` or ``diverged``.
     """
-    grid = Transcription(problem)
+    coarsest, *finer = grids(problem)
+    grid = Transcription(coarsest)
+    best, starts = _find_best(grid, search)
+    for coarse, fine in pairwise((coarsest, *finer)):
+        grid = Transcription(fine)
+        start = refine(best.x, coarse, grid)
+        if best.usable:
+            best = search.minimise(grid, start, TOLERANCE, NEAR)
+        if not best.usable:
+            best, starts = _find_best(grid, search)
+    return make_solution(grid, best, search, starts)
+
+
+def _find_best(grid: Transcription, search: Search) -> tuple[Outcome, int]:
+    """Return the best outcome on one grid, and the number of starts that it is the best of."""
     outcomes = [
         search.minimise(grid, start, TOLERANCE, barrier)
-        for start, barrier in _starts(problem, grid, search)
+        for start, barrier in _starts(grid.problem, grid, search)
     ]
-    return make_solution(grid, best_of(outcomes), search, len(outcomes))
+    return best_of(outcomes), len(outcomes)
 
 
 def best_of(outcomes: list[Outcome]) -> Outcome:

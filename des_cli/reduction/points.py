@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import Motion
-
-Indices: TypeAlias = np.ndarray[tuple[int], np.dtype[np.intp]]
+from des_cli.solver.program import Indices
 
 
 @dataclass(frozen=True)

@@ -1,25 +1,18 @@
-"""The study's own law, as printed: one backward-forward sweep.
+"""The study's law applied to a problem on its grid, once or several times.
 
-The adjoint equations (42)-(44) are integrated backward from (45) on the desired
-motion, the factor follows from (47),
-
-    L' = -1/2 d/dtheta (c' R1 c),   L(tf) = 0,   p = 1 - L' J2^-1 W / r2,
-
-and the angles are integrated forward once from (46). The law leaves out the
-derivative of c with respect to p: it is not the optimum, and iterating it need
-not converge. It is here to reproduce the study and as a baseline.
+``study.backward_forward`` holds the law. It is here to reproduce the study and as
+a baseline.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from des_cli.kinematics.coriolis import coriolis_derivatives
 from des_cli.model.arrays import Floats
-from des_cli.model.motion import Motion, mean_of_sides
 from des_cli.model.solution import Iteration, Solution, Status
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.transcription import Transcription
+from des_cli.study.backward_forward import adjoint_along, factors_of
 
 RUNAWAY = 1e6
 """A factor on the rates that no law means: from here squares soon leave the doubles."""
@@ -48,8 +41,8 @@ def sweep(problem: Problem, iterations: int = 1) -> Solution:
     change, message = 0.0, ""
     for number in range(1, iterations + 1):
         with np.errstate(over="ignore", invalid="ignore"):
-            adjoint_next = _adjoint(problem, grid.motion(x))
-            factor = _law(problem, grid, adjoint_next)
+            adjoint_next = adjoint_along(grid.motion(x), problem.chain, problem.axes, problem.r1)
+            factor = factors_of(problem.desired, adjoint_next, problem.r2)
         largest = float(np.max(np.abs(factor)))
         if not largest < RUNAWAY:
             message = (
@@ -77,26 +70,6 @@ def sweep(problem: Problem, iterations: int = 1) -> Solution:
         iterations=len(log),
         log=tuple(log),
     )
-
-
-def _adjoint(problem: Problem, motion: Motion) -> Floats:
-    """Integrate (42)-(45) backward along a motion, (n, 3)."""
-    c, dc_dangle, _ = coriolis_derivatives(
-        problem.chain, motion.angle_sides, motion.rate_sides, problem.axes
-    )
-    slope = np.einsum("ksca,ksc->ksa", dc_dangle, c @ problem.r1)
-    fall = 0.5 * motion.step[:, None] * slope.sum(axis=1)
-    return np.vstack([np.cumsum(fall[::-1], axis=0)[::-1], np.zeros(3)])
-
-
-def _law(problem: Problem, grid: Transcription, adjoint: Floats) -> Floats:
-    """Return the factors of (47), (n, m); one equation a joint for per-joint control."""
-    rate = problem.desired.rate_sides
-    sides = np.stack([adjoint[:-1], adjoint[1:]], axis=1)
-    power = mean_of_sides(sides * rate)
-    if grid.m == 1:
-        power = power.sum(axis=1, keepdims=True)
-    return np.asarray(1.0 - power / problem.r2)
 
 
 def _optimality(grid: Transcription, x: Floats) -> float:

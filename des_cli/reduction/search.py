@@ -7,8 +7,8 @@ from typing import TypeAlias
 
 from des_cli.model.arrays import Floats
 from des_cli.model.solution import Iteration
-from des_cli.reduction.interior import Outcome, minimise
 from des_cli.reduction.transcription import Transcription
+from des_cli.solver.interior import Outcome, minimise
 
 TOLERANCE = 1e-9
 """On the first-order conditions, relative to the largest dJ/du of the desired motion."""

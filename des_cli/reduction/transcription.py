@@ -18,51 +18,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from des_cli.kinematics.coriolis import (
-    PAIRS,
-    coriolis_pairs,
-    coriolis_pairs_gradient,
-    coriolis_pairs_hessian,
-)
+from des_cli.kinematics.coriolis import coriolis, coriolis_curvature, coriolis_derivatives
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.motion import Motion
-from des_cli.reduction.constraints import Rows, limit_rows
+from des_cli.reduction.constraints import limit_rows
 from des_cli.reduction.points import Points
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.rates import AdaptedRates, DesiredRates, Rates
-
-
-@dataclass(frozen=True)
-class Expansion:
-    """Cost with its first and second derivatives at one iterate.
-
-    Parameters
-    ----------
-    cost : float
-    gradient : (n, 3 + m) array
-    hessian : (n, 3 + m, 3 + m) array
-        Blocks (k, k) of the Gauss-Newton Hessian: positive semidefinite.
-    across : (n - 1, 3 + m, 3 + m) array, optional
-        Its blocks (k, k + 1), where the cost couples neighbours.
-    bend : (n, 3 + m, 3 + m) array, optional
-        What is missing to the exact Hessian.
-    """
-
-    cost: float
-    gradient: Floats
-    hessian: Floats
-    across: Floats | None = None
-    bend: Floats | None = None
-
-    def plus(self, price: float, other: Expansion) -> Expansion:
-        """Add another expansion at a price."""
-        return Expansion(
-            self.cost + price * other.cost,
-            self.gradient + price * other.gradient,
-            self.hessian + price * other.hessian,
-            _add(self.across, price, other.across),
-            _add(self.bend, price, other.bend),
-        )
+from des_cli.solver.program import Expansion, Rows
+from des_cli.study.backward_forward import follow
 
 
 class Measure(ABC):
@@ -119,6 +83,7 @@ class Transcription:
         # velocities integrate to, whatever the desired angle's quadrature was.
         missed[:, 0] = 0.0
         self._missed = 0.5 * missed[:, :, None] * self.joint
+        self._linear_dynamics: tuple[Floats, Floats] | None = None
         self.desired = np.hstack([motion.angle, np.ones((self.n, self.m))])
         """The iterate of the desired motion, u = 1."""
         self.pinned = self._pins()
@@ -169,12 +134,16 @@ class Transcription:
 
     def defect_jacobian(self, x: Floats) -> tuple[Floats, Floats]:
         """Return d defect_k / d x_k and / d x_{k+1}, (n - 1, 3, 3 + m) each."""
+        if self._linear_dynamics is not None:
+            return self._linear_dynamics
         _, slope = self.rates.expand(self.points.gather(x))
         left = -self._half * slope[self.points.start]
         ahead = -self._half * slope[self.points.end]
         for block, sign in ((left, -1.0), (ahead, 1.0)):
             block[:, :, :3] += sign * np.eye(3)
             block[:, :, 3:] -= self._missed
+        if self.problem.jacobian == "desired":
+            self._linear_dynamics = left, ahead
         return left, ahead
 
     def defect_curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
@@ -187,17 +156,13 @@ class Transcription:
 
     def follow(self, control: Floats) -> Floats:
         """Integrate factors (n, m) to an iterate on the dynamics of the desired Jacobian."""
-        x = np.hstack([self.problem.desired.angle, control])
-        made = -self.defect(x) + np.diff(x[:, :3], axis=0)
-        x[1:, :3] = x[0, :3] + np.cumsum(made, axis=0)
-        return x
+        return np.hstack([follow(self.problem.desired, control).angle, control])
 
     # ------------------------------------------------------------------ cost
     def coriolis(self, x: Floats) -> Floats:
         """Return the Coriolis vector at the points, (q, 3) [rad/s^2]."""
-        here = self.points.gather(x)
-        pairs = coriolis_pairs(self.problem.chain, here[:, :3], self.problem.axes)
-        return np.asarray((rate_products(self.rates.value(here))[:, None, :] @ pairs)[:, 0])
+        here, problem = self.points.gather(x), self.problem
+        return coriolis(problem.chain, here[:, :3], self.rates.value(here), problem.axes)
 
     def cost(self, x: Floats) -> float:
         """Return J of an iterate, and the price of what is paid for."""
@@ -217,37 +182,29 @@ class Transcription:
 
     def coriolis_form(self, x: Floats) -> CoriolisForm:
         """Return the Coriolis vector at the points and its Jacobian."""
-        here = self.points.gather(x)
-        angle = here[:, :3]
+        here, problem = self.points.gather(x), self.problem
         rate, slope = self.rates.expand(here)
-        pairs = coriolis_pairs(self.problem.chain, angle, self.problem.axes)
-        turn = coriolis_pairs_gradient(self.problem.chain, angle, self.problem.axes)
-        products = rate_products(rate)
-        jacobian = np.swapaxes(pairs, 1, 2) @ (_rate_products_jacobian(rate) @ slope)
-        jacobian[:, :, :3] += np.swapaxes((products[:, None, None, :] @ turn)[:, :, 0], 1, 2)
-        return CoriolisForm((products[:, None, :] @ pairs)[:, 0], jacobian)
+        value, by_angle, by_rate = coriolis_derivatives(
+            problem.chain, here[:, :3], rate, problem.axes
+        )
+        jacobian = by_rate @ slope
+        jacobian[:, :, :3] += by_angle
+        return CoriolisForm(value, jacobian)
 
     def coriolis_curvature(self, x: Floats, pull: Floats) -> Floats:
         """Return sum_q pull_q d2 c_q / dx dx at the points, (q, 3 + m, 3 + m)."""
-        problem, here = self.problem, self.points.gather(x)
-        angle = here[:, :3]
+        here, problem = self.points.gather(x), self.problem
         rate, slope = self.rates.expand(here)
-        products, gain = rate_products(rate), _rate_products_jacobian(rate)
-        pairs = coriolis_pairs(problem.chain, angle, problem.axes)
-        turn = coriolis_pairs_gradient(problem.chain, angle, problem.axes)
-        bend = coriolis_pairs_hessian(problem.chain, angle, problem.axes)
-        along = (pairs @ pull[:, :, None])[:, :, 0]  # of each pair
-        turned = (turn @ pull[:, None, :, None])[:, :, :, 0] @ gain  # (q, angle, rate)
-        bent = (bend @ pull[:, None, None, :, None])[..., 0] @ products[:, None, :, None]
-        cross = turned @ slope  # (q, angle, 3 + m)
-        bilinear = np.zeros((len(angle), 3, 3))
-        for pair, (i, j) in enumerate(PAIRS):
-            bilinear[:, i, j] = bilinear[:, j, i] = along[:, pair]
-        curvature: Floats = np.swapaxes(slope, 1, 2) @ bilinear @ slope
-        curvature[:, :3, :3] += bent[..., 0]
+        angle_angle, angle_rate, rate_rate = coriolis_curvature(
+            problem.chain, here[:, :3], rate, pull, problem.axes
+        )
+        cross = angle_rate @ slope  # (q, angle, 3 + m)
+        curvature: Floats = np.swapaxes(slope, 1, 2) @ rate_rate @ slope
+        curvature[:, :3, :3] += angle_angle
         curvature[:, :3, :] += cross
         curvature[:, :, :3] += np.swapaxes(cross, 1, 2)
-        through_rates = self.rates.bend(here, (along[:, None, :] @ gain)[:, 0])
+        along_rates = (rate_rate @ rate[:, :, None])[:, :, 0]  # pull' dc/dtheta'
+        through_rates = self.rates.bend(here, along_rates)
         return curvature if through_rates is None else curvature + through_rates
 
     def expand(self, x: Floats) -> Expansion:
@@ -324,23 +281,3 @@ class Transcription:
         """Return the size of dJ/du per unit time that the desired motion meets."""
         force = self.gradient(self.desired)[:, 3:] / self.weight[:, None]
         return float(max(np.max(np.abs(force)), np.max(self.problem.r2), 1e-12))
-
-
-def _add(one: Floats | None, price: float, other: Floats | None) -> Floats | None:
-    if other is None:
-        return one
-    return price * other if one is None else one + price * other
-
-
-def rate_products(rate: Floats) -> Floats:
-    """Return theta_i' theta_j' for the joint pairs, (q, 3)."""
-    return np.stack([rate[:, i] * rate[:, j] for i, j in PAIRS], axis=1)
-
-
-def _rate_products_jacobian(rate: Floats) -> Floats:
-    """Return d(theta_i' theta_j') / d theta', (q, 3 pairs, 3 rates)."""
-    jacobian = np.zeros((len(rate), 3, 3))
-    for pair, (i, j) in enumerate(PAIRS):
-        jacobian[:, pair, i] = rate[:, j]
-        jacobian[:, pair, j] = rate[:, i]
-    return jacobian

@@ -15,11 +15,11 @@ import numpy as np
 
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.solution import Solution, Status
-from des_cli.reduction.interior import Outcome
 from des_cli.reduction.optimum import FAR, make_solution
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.search import COARSE, TOLERANCE, Search
 from des_cli.reduction.transcription import Transcription
+from des_cli.solver.interior import Outcome
 
 WITHIN = 0.5
 """Share of the tolerance that is allowed at samples: between them the Coriolis vector

@@ -22,8 +22,8 @@ from des_cli.cli.state_options import QUANTITIES
 from des_cli.files.load import load_profile
 from des_cli.files.state_tables import state_columns
 from des_cli.kinematics.desired import make_desired
-from des_cli.kinematics.state_report import report_motion
 from des_cli.model.machine import JOINTS
+from des_cli.study.state import report_motion
 from des_cli.units import FOOT_M, UNITS, suffixes
 
 REFERENCE = json.loads(

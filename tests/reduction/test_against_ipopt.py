@@ -8,9 +8,9 @@ import pytest
 
 from des_cli.model.machines import DES
 from des_cli.reduction.executable import nearest_executable
-from des_cli.reduction.interior import minimise
 from des_cli.reduction.limits import find_violations
 from des_cli.reduction.transcription import Transcription
+from des_cli.solver.interior import minimise
 
 OPTIONS = {
     "print_time": False,

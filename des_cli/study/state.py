@@ -13,7 +13,6 @@ import numpy as np
 from des_cli.kinematics.chain import chain_of, linear_jacobian, transform
 from des_cli.kinematics.coriolis import angular_acceleration_split
 from des_cli.kinematics.orientation import body_jacobian, ground_jacobian
-from des_cli.kinematics.report_forms import seat_turn
 from des_cli.kinematics.seat import (
     in_seat_axes,
     linear_acceleration_parts,
@@ -23,6 +22,7 @@ from des_cli.kinematics.seat import (
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Machine, Seat
 from des_cli.model.motion import Motion, mean_of_sides
+from des_cli.study.closed_forms import seat_turn
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
 

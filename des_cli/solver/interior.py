@@ -24,11 +24,10 @@ from scipy.linalg import LinAlgError
 
 from des_cli.model.arrays import Floats
 from des_cli.model.solution import Iteration
-from des_cli.reduction.filter import Filter, Trial
-from des_cli.reduction.newton_system import NewtonSystem, transposed
-from des_cli.reduction.program import Program
-from des_cli.reduction.slacks import Side, longest_step
-from des_cli.reduction.transcription import Expansion
+from des_cli.solver.filter import Filter, Trial
+from des_cli.solver.newton_system import Dynamics, NewtonSystem, transposed
+from des_cli.solver.program import Expansion, Program
+from des_cli.solver.slacks import Side, longest_step
 
 # Fraction of the way to the boundary that a step may take, at the least
 # (Waechter and Biegler, eq. 8).
@@ -125,6 +124,7 @@ class _Local:
     excess: list[Floats]  # two for each set of rows: upper, lower
     rows: list[tuple[Floats, Floats | None]]  # Jacobians
     dynamics: tuple[Floats, Floats]
+    movable: Dynamics
 
 
 @dataclass(frozen=True)
@@ -153,6 +153,7 @@ class _Method:
         self.mu = barrier * self.unit
         self.least_mu = 0.1 * tolerance * self.unit
         self.share = 1.0
+        self._linear: tuple[tuple[Floats, Floats], Dynamics] | None = None
         self.sides: list[Side] = []
         for rows in program.rows:
             value = rows.value(self.x)
@@ -200,8 +201,15 @@ class _Method:
             defect=self.program.defect(self.x),
             excess=self._excess(self.x),
             rows=[rows.jacobian(self.x) for rows in self.program.rows],
-            dynamics=self.program.defect_jacobian(self.x),
+            dynamics=(dynamics := self.program.defect_jacobian(self.x)),
+            movable=self._movable(dynamics),
         )
+
+    def _movable(self, dynamics: tuple[Floats, Floats]) -> Dynamics:
+        """Return the dynamics of what moves, kept where they are the same at every iterate."""
+        if self._linear is None or self._linear[0] is not dynamics:
+            self._linear = (dynamics, Dynamics(*dynamics, self.program.pinned))
+        return self._linear[1]
 
     def _excess(self, x: Floats) -> list[Floats]:
         excess = []
@@ -254,13 +262,13 @@ class _Method:
         convex, bend, across = self._blocks(local)
         size = self.program.scale * float(self.program.weight.max())
         for share, shift in self._convexities():
-            hessian = convex + share * bend
+            hessian = convex + share * bend if bend is not None else convex.copy()
             if shift:
                 diagonal = np.arange(self.width)
                 hessian[:, diagonal, diagonal] += (
                     shift * self.program.scale * self.program.weight[:, None]
                 )
-            system = NewtonSystem(hessian, across, *local.dynamics, self.program.pinned)
+            system = NewtonSystem(hessian, across, local.movable)
             if not system.is_convex(size):
                 continue
             try:
@@ -281,16 +289,16 @@ class _Method:
         for shift in SHIFTS:
             yield 0.0, shift
 
-    def _blocks(self, local: _Local) -> tuple[Floats, Floats, Floats]:
+    def _blocks(self, local: _Local) -> tuple[Floats, Floats | None, Floats | None]:
         """Return the convex part of the blocks (k, k), what bends them, and blocks (k, k + 1).
 
         Slacks and their multipliers are eliminated; the dynamics are not in it.
         """
         hessian = local.expansion.hessian.copy()
         bends = [local.expansion.bend, self.program.defect_curvature(self.x, self.multiplier)]
-        across = np.zeros((self.n - 1, self.width, self.width))
-        if local.expansion.across is not None:
-            across += local.expansion.across
+        across = local.expansion.across
+        if across is not None or any(at_next is not None for _, at_next in local.rows):
+            across = np.zeros((self.n - 1, self.width, self.width)) if across is None else +across
         for index, (rows, (at_node, at_next)) in enumerate(
             zip(self.program.rows, local.rows, strict=True)
         ):
@@ -299,10 +307,11 @@ class _Method:
             hessian[rows.node] += transposed(at_node * stiffness) @ at_node
             if at_next is not None:
                 hessian[rows.node + 1] += transposed(at_next * stiffness) @ at_next
+                assert across is not None
                 across[rows.node] += transposed(at_node * stiffness) @ at_next
             bends.append(rows.curvature(self.x, self._net_dual(index)))
-        bend = sum((b for b in bends if b is not None), start=np.zeros_like(hessian))
-        return hessian, bend, across
+        bending = [bend for bend in bends if bend is not None]
+        return hessian, sum(bending[1:], start=bending[0]) if bending else None, across
 
     def _force(self, local: _Local, excess: list[Floats]) -> Floats:
         """Return the gradient of the barrier problem, slacks eliminated, (n, 3 + m)."""

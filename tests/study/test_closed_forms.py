@@ -8,7 +8,9 @@ import pytest
 from des_cli.kinematics.chain import chain_of, linear_jacobian, transform
 from des_cli.kinematics.coriolis import angular_acceleration_split, coriolis
 from des_cli.kinematics.orientation import body_jacobian, ground_jacobian
-from des_cli.kinematics.report_forms import (
+from des_cli.model.machine import Seat
+from des_cli.model.machines import DES
+from des_cli.study.closed_forms import (
     closed_form_angular_acceleration,
     closed_form_body_jacobian,
     closed_form_coriolis,
@@ -17,8 +19,6 @@ from des_cli.kinematics.report_forms import (
     report_jacobian,
     seat_turn,
 )
-from des_cli.model.machine import Seat
-from des_cli.model.machines import DES
 from des_cli.units import FOOT_M
 
 MANY = 100_000

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from des_cli.reduction.constraints import Rows
-from des_cli.reduction.interior import minimise
-from des_cli.reduction.transcription import Expansion
+from des_cli.solver.interior import minimise
+from des_cli.solver.program import Expansion, Rows
 
 
 class Program:

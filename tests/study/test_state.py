@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from des_cli.kinematics.report_forms import seat_turn
-from des_cli.kinematics.state_report import StateReport, report_motion, report_states
 from des_cli.model.motion import Motion
+from des_cli.study.closed_forms import seat_turn
+from des_cli.study.state import StateReport, report_motion, report_states
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
 
