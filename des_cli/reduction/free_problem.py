@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from des_cli.kinematics.chain import Chain, chain_of
+from des_cli.kinematics.coriolis import coriolis
 from des_cli.kinematics.seat_turn import SeatTurn, seat_turns
 from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import SeatForms, SeatMotion, seat_forms
@@ -17,6 +18,7 @@ from des_cli.model.metric import Budget
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
+from des_cli.reduction.ground_cross import GroundCross
 from des_cli.reduction.limit_rows import LimitRows, Tie
 from des_cli.reduction.local_bounds import (
     AttitudeBound,
@@ -141,7 +143,7 @@ def pose_motion(
     windows = Windows(grid, SEAT_VARIABLES)
     angle, rate, acceleration = sample_motion(task.reference, windows.times())
     seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
-    measures = _Measures(grid, base, angle, seat)
+    measures = _Measures(grid, base, angle, seat, cross_coupling(task, grid))
     acceleration_limit = np.array([limit.acceleration for limit in task.machine.limits])
     unit = np.where(np.isfinite(acceleration_limit), acceleration_limit, UNIT_ACCELERATION)
     attitude = [b for b in reduction.budget if b.metric == "attitude_error_max_deg"]
@@ -159,40 +161,55 @@ def pose_motion(
             *_occupant_bounds(task.occupant, grid),
         ],
         seat=_free_seat(task),
+        ground=measures.ground(task),
     )
 
 
 def cross_coupling(task: FreeTask, grid: SplineGrid) -> float:
     """Return the reference's ``int c' R1 c dt``, which the cost is relative to."""
-    forms = seat_forms(task.chain, task.machine.gravity)
     times = Windows(grid, SEAT_VARIABLES).times()
-    angle, rate, acceleration = sample_motion(task.reference, times)
-    seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
-    root = _root(task.reduction.r1)
-    return float(0.5 * grid.step * np.sum((root @ seat.products[:3]) ** 2))
+    angle, rate, _ = sample_motion(task.reference, times)
+    c = coriolis(task.chain, angle, rate, "report" if in_ground_axes(task.reduction) else "seat")
+    return float(0.5 * grid.step * np.sum((c @ _root(task.reduction.r1)) ** 2))
+
+
+def in_ground_axes(reduction: Reduction) -> bool:
+    """Return whether the weight needs the study's axes: a weight on the length needs none."""
+    isotropic = np.array_equal(reduction.r1, reduction.r1[0, 0] * np.eye(3))
+    return reduction.axes == "report" and not isotropic
 
 
 class _Measures:
     """Costs and budgets on a grid, relative to the reference's own size."""
 
-    def __init__(self, grid: SplineGrid, base: Floats, angle: Floats, seat: SeatMotion) -> None:
+    def __init__(
+        self, grid: SplineGrid, base: Floats, angle: Floats, seat: SeatMotion, size: float
+    ) -> None:
         self.grid, self.base, self.angle, self.seat = grid, base, angle, seat
+        self.size = max(size, 1e-300)
         self.weight = 0.5 * grid.step
 
     def cost(self, reduction: Reduction) -> list[Term]:
         """Return the terms of the objective; the reference's cross-coupling counts one."""
-        root = _root(reduction.r1)
-        cross = value_of(self.seat, "cross")
-        size = max(self.weight * float(np.sum((root @ cross) ** 2)), 1e-300)
         terms = []
-        if reduction.objective != "felt":
-            terms.append(Term("cross", root * np.sqrt(self.weight / size)))
+        if reduction.objective != "felt" and not in_ground_axes(reduction):
+            terms.append(Term("cross", self._cross_root(reduction)))
         if reduction.objective != "coriolis":
+            cross = value_of(self.seat, "cross")
             share = BLEND if reduction.objective == "blend" else 1.0
-            isotropic = np.sqrt(share * np.trace(reduction.r1) / 3.0 * self.weight / size)
+            isotropic = np.sqrt(share * np.trace(reduction.r1) / 3.0 * self.weight / self.size)
             target = value_of(self.seat, "acceleration") - cross
             terms.append(Term("acceleration", isotropic * np.eye(3), target))
         return terms
+
+    def ground(self, task: FreeTask) -> GroundCross | None:
+        """Return the cost of the cross-coupling in the study's axes, if that is weighed."""
+        if task.reduction.objective == "felt" or not in_ground_axes(task.reduction):
+            return None
+        return GroundCross(task.chain, self._cross_root(task.reduction))
+
+    def _cross_root(self, reduction: Reduction) -> Floats:
+        return np.asarray(_root(reduction.r1) * np.sqrt(self.weight / self.size))
 
     def budget(self, budget: Budget) -> Term | JointBudget:
         """Return a budget as the square of its metric over the square of its most."""
