@@ -43,6 +43,9 @@ _GRAVITY = _ARM[:6]
 _0, _2, _3, _22, _23, _33, _222, _223, _233, _333 = range(10)
 _F0, _F3, _F33, _F333 = range(4)
 
+_ROWS = ((0, 1, 2, 3, 4), (8, 9, 10, 11), (15, 16, 17), (21, 22), (26,))
+"""Where the pairs of the first five variables stand in the upper triangle of all eight."""
+
 _VERTICAL = 1e-12
 """Largest change of gravity along seat axes per radian of the arm, relative to gravity."""
 
@@ -205,7 +208,9 @@ class SeatMotion:
             h[8] += np.sum(force * self.gravity[_33], axis=0)
             by = self.twist_slope
             turned = cross(by[:, 3:], force)
-            for k, row in enumerate(((0, 1, 2, 3, 4), (8, 9, 10, 11), (15, 16, 17), (21, 22), (26,))):
+            for k, row in enumerate(
+                ((0, 1, 2, 3, 4), (8, 9, 10, 11), (15, 16, 17), (21, 22), (26,))
+            ):
                 both = np.einsum("cm,lcm->lm", by[k, :3], turned[k:])
                 both += np.einsum("cm,lcm->lm", turned[k], by[k:, :3])
                 h[list(row)] += both
@@ -324,4 +329,4 @@ def cross(one: Floats, other: Floats) -> Floats:
 
 
 def _contract(table: Floats, multiplier: Floats) -> Floats:
-    return np.einsum("tcm,cm->tm", table, multiplier)
+    return np.asarray(np.einsum("tcm,cm->tm", table, multiplier))

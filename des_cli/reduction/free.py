@@ -40,6 +40,7 @@ from des_cli.reduction.free_problem import (
 )
 from des_cli.reduction.inside import find_inside
 from des_cli.reduction.limit_rows import Tie
+from des_cli.reduction.limits import find_violations
 from des_cli.reduction.motion_program import MotionProgram
 from des_cli.reduction.ties import tie_reversals
 from des_cli.solver.barrier import Options, Outcome, Step, minimise
@@ -165,7 +166,7 @@ class _Search:
         grids = self._grids()
         fits = [self._fit(grid) for grid in grids]
         finest = fits[-1]
-        desired = sample_spline(finest, self.t)
+        desired = self._desired(finest)
         if finest.trouble:
             return self._refused(desired, finest.trouble)
         energy = cross_coupling(self.task, finest.grid)
@@ -196,6 +197,13 @@ class _Search:
             x = outcome.x
         assert outcome is not None
         return self._settled(finest, desired, budgets, outcome, start)
+
+    def _desired(self, fit: ExecutableSpline) -> Motion:
+        """Return what the profile asks for, or its executable replacement if it needs one."""
+        enforced = self.task.reduction.limits == "enforce"
+        if not enforced or not find_violations(self.task.machine, self.task.reference, "desired"):
+            return self.task.reference
+        return sample_spline(fit, self.t)
 
     def _grids(self) -> list[SplineGrid]:
         """Return the grids to solve on, the last one that of the result."""
@@ -260,9 +268,7 @@ class _Search:
             outcome = self._minimise(program, inside, rough=True, warm=outcome is not None)
         return outcome
 
-    def _minimise(
-        self, program: MotionProgram, x: Floats, *, rough: bool, warm: bool
-    ) -> Outcome:
+    def _minimise(self, program: MotionProgram, x: Floats, *, rough: bool, warm: bool) -> Outcome:
         options = Options(
             gap=ROUGH_GAP if rough else GAP,
             tolerance=TOLERANCE,
@@ -432,4 +438,3 @@ def _refined(coarse: ExecutableSpline, fine: ExecutableSpline, x: Floats) -> Flo
     while grid.intervals < fine.grid.intervals:
         grid, control = grid.refined(control)
     return np.concatenate([(control - fine.control).reshape(-1), x[size:]])
-

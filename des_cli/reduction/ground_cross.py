@@ -23,7 +23,10 @@ GROUND_VARIABLES = ((0, 0), (0, 1), (1, 0), (1, 1), (1, 2))
 """Order and joint of the variables: the angles of arm and fork, the rates."""
 
 _COUNT = len(GROUND_VARIABLES)
-_PAIR = {pair: index for index, pair in enumerate(zip(*np.triu_indices(_COUNT), strict=True))}
+_PAIR = {
+    pair: index
+    for index, pair in enumerate((k, n) for k in range(_COUNT) for n in range(k, _COUNT))
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +78,7 @@ class GroundCross:
 
 def squares_of(slope: Floats) -> Floats:
     """Return ``slope' slope``, its upper triangle, (15, m)."""
-    return np.stack([np.sum(slope[k] * slope[l], axis=0) for k, l in _PAIR])
+    return np.stack([np.sum(slope[k] * slope[n], axis=0) for k, n in _PAIR])
 
 
 def _angles(z: Floats) -> Floats:

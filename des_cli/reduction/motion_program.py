@@ -367,9 +367,9 @@ class _Chunk:
         if isinstance(bound, AttitudeBound):
             hessian = np.stack(
                 [
-                    np.sum(stiffness * slope[k] * slope[l], axis=0)
+                    np.sum(stiffness * slope[k] * slope[n], axis=0)
                     for k in range(JOINTS)
-                    for l in range(k, JOINTS)
+                    for n in range(k, JOINTS)
                 ]
             )
             if self.share > 0.0:

@@ -109,8 +109,6 @@ def squares(slopes: list[Floats]) -> Floats:
         stacked = np.concatenate(few, axis=1)
         at = 0
         for k in range(_RATE_VARIABLES):
-            total[at : at + _RATE_VARIABLES - k] += np.einsum(
-                "rm,lrm->lm", stacked[k], stacked[k:]
-            )
+            total[at : at + _RATE_VARIABLES - k] += np.einsum("rm,lrm->lm", stacked[k], stacked[k:])
             at += VARIABLES - k
     return total
