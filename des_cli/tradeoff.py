@@ -237,10 +237,17 @@ def _measures(metrics: Mapping[str, Any]) -> dict[str, Any]:
         "joint_deviation_relative",
         "seat_rate_deviation_relative",
         "seat_g_rms_error_g",
+        "seat_angular_acceleration_rms_error_rad_s2",
         "attitude_error_max_deg",
     )
+    turning = metrics["felt"]["seat_angular_acceleration"]["magnitude"]
     return {
         **{f"{part}_reduction": metrics["coriolis"][part]["reduction"] for part in parts},
         **{key: metrics["fidelity"][key] for key in costs},
+        **{
+            f"seat_angular_acceleration_{kind}{column}_rad_s2": turning[f"{kind}_{when}_rad_s2"]
+            for kind in ("rms", "peak")
+            for column, when in (("_before", "before"), ("", "after"))
+        },
         "limits_ok": all(joint["ok"] for joint in metrics["limits"]["modified"].values()),
     }

@@ -39,7 +39,7 @@ class Part:
 
     def used(self) -> Flags:
         """Return the places that are not zero in every block, (r, c)."""
-        return self.values.any(axis=0)
+        return np.asarray(self.values.any(axis=0))
 
 
 class BandedLU:
