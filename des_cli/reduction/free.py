@@ -32,6 +32,7 @@ from des_cli.reduction.executable import (
 )
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free_problem import (
+    AT_POINTS,
     FreeTask,
     cross_coupling,
     in_ground_axes,
@@ -51,6 +52,8 @@ WELL_POSED: frozenset[MetricKey] = frozenset(
         "seat_rate_deviation_relative",
         "seat_angular_acceleration_deviation_relative",
         "seat_angular_acceleration_rms_error_rad_s2",
+        "seat_angular_acceleration_rms_ratio",
+        "seat_angular_acceleration_peak_ratio",
     }
 )
 """Metrics that see fast motions, so that a budget on one of them leaves one optimum."""
@@ -403,7 +406,7 @@ class _Search:
     def _unreachable(self, program: MotionProgram) -> str:
         """Say which budgets the limits alone exceed."""
         values = program.values(np.zeros(program.size))
-        budgets = [b for b in self.task.reduction.budget if b.metric != "attitude_error_max_deg"]
+        budgets = [b for b in self.task.reduction.budget if b.metric not in AT_POINTS]
         over = [
             f"{METRICS[b.metric].label} {np.sqrt(value) * b.most:.3g} instead of {b.most:.3g}"
             for b, value in zip(budgets, values.budgets, strict=True)

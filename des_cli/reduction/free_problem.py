@@ -9,12 +9,13 @@ import numpy as np
 
 from des_cli.kinematics.chain import Chain, chain_of
 from des_cli.kinematics.coriolis import coriolis
+from des_cli.kinematics.response import respond_on
 from des_cli.kinematics.seat_turn import SeatTurn, seat_turns
 from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import SeatForms, SeatMotion, seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine, OccupantBounds, Seat
-from des_cli.model.metric import Budget
+from des_cli.model.metric import Budget, MetricKey
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
@@ -55,6 +56,11 @@ UNIT_ACCELERATION = 1.0
 
 PILOT_SIGNS = np.array([1.0, 1.0, -1.0])
 """From the specific force along x, y, z of the seat to Gx, Gy, Gz."""
+
+AT_POINTS: frozenset[MetricKey] = frozenset(
+    {"attitude_error_max_deg", "seat_angular_acceleration_peak_ratio"}
+)
+"""Metrics that are a largest value over time: bounds at each point, and no integrals."""
 
 SEAT_ANGLES = ("seat_yaw", "seat_pitch")
 
@@ -146,18 +152,17 @@ def pose_motion(
     measures = _Measures(grid, base, angle, seat, cross_coupling(task, grid))
     acceleration_limit = np.array([limit.acceleration for limit in task.machine.limits])
     unit = np.where(np.isfinite(acceleration_limit), acceleration_limit, UNIT_ACCELERATION)
-    attitude = [b for b in reduction.budget if b.metric == "attitude_error_max_deg"]
     return MotionProblem(
         grid=grid,
         base=base,
         forms=forms,
         cost=measures.cost(reduction),
-        budgets=[measures.budget(b) for b in reduction.budget if b not in attitude],
+        budgets=[measures.budget(b) for b in reduction.budget if b.metric not in AT_POINTS],
         rows=LimitRows(grid, base, task.limits, task.ends, MARGIN, ties),
         ends=task.ends,
         smoothing=REGULARISATION / (grid.duration * unit**2),
         local=[
-            *(_attitude_bound(task.chain, angle, budget.most) for budget in attitude),
+            *(_point_bound(task, angle, b) for b in reduction.budget if b.metric in AT_POINTS),
             *_occupant_bounds(task.occupant, grid),
         ],
         seat=_free_seat(task),
@@ -230,6 +235,8 @@ class _Measures:
                 return self._term("acceleration", self._per_size("acceleration") / most)
             case "seat_angular_acceleration_rms_error_rad_s2":
                 return self._term("acceleration", np.sqrt(mean) / most)
+            case "seat_angular_acceleration_rms_ratio":
+                return Term("acceleration", self._per_size("acceleration") / most * np.eye(3))
         raise ValueError(f"a free motion has no budget on {budget.metric}")
 
     def _per_size(self, quantity: str) -> float:
@@ -254,6 +261,15 @@ def _root(weight: Floats) -> Floats:
         return np.diag(np.sqrt(np.diag(weight)))
     values, vectors = np.linalg.eigh(weight)
     return np.asarray((vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
+
+
+def _point_bound(task: FreeTask, angle: Floats, budget: Budget) -> LocalBound:
+    """Return a budget that bounds every point."""
+    if budget.metric == "attitude_error_max_deg":
+        return _attitude_bound(task.chain, angle, budget.most)
+    response = respond_on(task.chain, task.machine.gravity, task.reference)
+    peak = np.max(np.linalg.norm(response.seat_angular_acceleration, axis=-1))
+    return NormBound("acceleration", budget.most * max(float(peak), 1e-150))
 
 
 def _attitude_bound(chain: Chain, angle: Floats, most_deg: float) -> AttitudeBound:
