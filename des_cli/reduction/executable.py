@@ -120,6 +120,7 @@ class _Nearest:
     """The convex problem; its unknowns are the angles and the rates at each sample."""
 
     scale = 1.0
+    budgets = ()
 
     def __init__(self, machine: Machine, desired: Motion) -> None:
         n = len(desired.t)

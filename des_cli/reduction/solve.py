@@ -8,7 +8,7 @@ from des_cli.model.machine import JOINTS, Machine
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Reduction
 from des_cli.model.solution import Solution
-from des_cli.reduction.budget import pose_budget, spend_budget
+from des_cli.reduction.budget import pose_budget, spend_budgets
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.optimum import find_optimum
 from des_cli.reduction.problem import Problem
@@ -42,9 +42,8 @@ def solve(
         posed = pose_zero(problem)
         return posed, find_zero(posed, np.diag(problem.r1) > 0.0, wanted.tolerance, search)
     if wanted.budget:
-        ((metric, budget),) = ((b.metric, b.most) for b in wanted.budget)
         posed = pose_budget(problem)
-        return posed, spend_budget(posed, metric, budget, search)
+        return posed, spend_budgets(posed, wanted.budget, search)
     return problem, find_optimum(problem, search)
 
 
