@@ -10,7 +10,7 @@ from des_cli.model.machine import Seat
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution
-from des_cli.reduction.budget import pose_budget, spend_budget
+from des_cli.reduction.budget import pose_budget, spend_budgets
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.free import find_free_motion
 from des_cli.reduction.free_problem import FreeTask
@@ -113,9 +113,8 @@ def solve(
         posed = pose_zero(problem)
         return posed, find_zero(posed, np.diag(problem.r1) > 0.0, reduction.tolerance, search)
     if reduction.budget:
-        ((metric, budget),) = ((b.metric, b.most) for b in reduction.budget)
         posed = pose_budget(problem)
-        return posed, spend_budget(posed, metric, budget, search)
+        return posed, spend_budgets(posed, reduction.budget, search)
     return problem, find_optimum(problem, search)
 
 
