@@ -71,15 +71,15 @@ FEW = 250
 DOWN = (16.0, 8.0, 4.0, 2.0, 1.0)
 """Multiples of the budgets that the second start of an ill-posed problem comes down by."""
 
-GAP, TOLERANCE = 1e-8, 1e-6
+GAP, TOLERANCE = 1e-7, 1e-6
 """Where a minimisation ends: complementarity, relative to the desired cross-coupling, and
 first-order conditions, relative to the gradients at its start."""
 
 ROUGH_GAP = 1e-3
 """Where it ends on a coarser grid: far enough inside to be inside on a finer one too."""
 
-WARM_GAP = 1e-2
-"""Complementarity that a start near the optimum begins with."""
+START_GAP, WARM_GAP = 3.0, 1e-2
+"""Complementarity that a search begins with, from far away and near the optimum."""
 
 ACCEPTABLE = 1e-4
 """Complementarity at which a search that did not converge is good enough to be used: its
@@ -275,7 +275,7 @@ class _Search:
         options = Options(
             gap=ROUGH_GAP if rough else GAP,
             tolerance=TOLERANCE,
-            start_gap=WARM_GAP if warm else 1.0,
+            start_gap=WARM_GAP if warm else START_GAP,
             max_iterations=min(EACH, self.log.left) if rough else self.log.left,
         )
         return minimise(program, x, options, self.log)

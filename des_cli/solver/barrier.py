@@ -58,11 +58,11 @@ OVERSHOOT = 0.1
 SHORTEST_CORRECTED = 0.05
 """Shortest first step that is worth a second-order correction."""
 
-CONTRACTION, SUPERLINEAR = 0.2, 1.5
+CONTRACTION, SUPERLINEAR = 0.3, 1.5
 """The barrier falls to this share, or to this power of the gap, once its problem is solved
 to within ``CENTRED`` times the gap."""
 
-CENTRED = 10.0
+CENTRED = 3.0
 
 HALVINGS = 25
 """Of a step, before the search gives up."""
@@ -181,9 +181,9 @@ class Options:
         Told the budgets' values at each iterate; ends the method where it returns True.
     """
 
-    gap: float = 1e-8
+    gap: float = 1e-7
     tolerance: float = 1e-7
-    start_gap: float = 1.0
+    start_gap: float = 3.0
     max_iterations: int = 200
     stop_early: Callable[[Floats], bool] | None = None
 
