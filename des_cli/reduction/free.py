@@ -19,6 +19,7 @@ import numpy as np
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.coriolis import coriolis
 from des_cli.kinematics.response import respond_on
+from des_cli.kinematics.twist import seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
 from des_cli.model.metric import METRICS, Budget, MetricKey
@@ -175,6 +176,9 @@ class _Search:
         self.well_posed = felt or task.reduction.objective != "coriolis"
 
     def run(self) -> FreeResult:
+        if not seat_forms(self.task.chain, self.task.machine.gravity).vertical:
+            why = "free joints need an arm that turns about the vertical; take --control scalar"
+            return self._refused(self.task.reference, why)
         grids = self._grids()
         fits = [self._fit(grid) for grid in grids]
         finest = fits[-1]
