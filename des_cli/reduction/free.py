@@ -285,13 +285,23 @@ class _Search:
         return outcome
 
     def _minimise(self, program: MotionProgram, x: Floats, *, rough: bool, warm: bool) -> Outcome:
-        options = Options(
-            gap=ROUGH_GAP if rough else GAP,
-            tolerance=TOLERANCE,
-            start_gap=WARM_GAP if warm else START_GAP,
-            max_iterations=min(EACH, self.log.left) if rough else self.log.left,
-        )
-        return minimise(program, x, options, self.log)
+        """Minimise; where a warm start leads nowhere, begin far from all bounds instead."""
+        most = ROUGH_STEPS if rough else STEPS
+        outcome: Outcome | None = None
+        for start_gap in (WARM_GAP, START_GAP) if warm else (START_GAP,):
+            options = Options(
+                gap=ROUGH_GAP if rough else GAP,
+                tolerance=TOLERANCE,
+                start_gap=start_gap,
+                max_iterations=min(most, self.log.left),
+            )
+            found = minimise(program, x, options, self.log)
+            if outcome is None or found.values.cost < outcome.values.cost:
+                outcome = found
+            if found.status == "converged":
+                return found
+        assert outcome is not None
+        return outcome
 
     def _settled(
         self,
@@ -456,8 +466,9 @@ class _Search:
         )
 
 
-EACH = 120
-"""Newton steps of one rough minimisation, at the most."""
+ROUGH_STEPS, STEPS = 120, 500
+"""Newton steps of one minimisation on the way, and at the end, at the most: a problem that
+has one optimum takes twenty."""
 
 COARSE_ROOM = 1e-2
 """Share of a bound at points that a coarse grid leaves to the finer ones."""
