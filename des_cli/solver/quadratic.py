@@ -17,8 +17,8 @@ from des_cli.model.arrays import Floats
 from des_cli.solver.band import BandCholesky, SymmetricBand
 from des_cli.solver.spline import Ends
 
-FEASIBLE = 1e-9
-"""Excess over a limit at the end, relative to the limit."""
+FEASIBLE = 1e-7
+"""Excess over a limit at the end, relative to the limit: what long angles leave of a jerk."""
 
 OPTIMAL = 1e-6
 """First-order conditions and gap at the end, relative to b and to the cost. The result is a
