@@ -157,9 +157,13 @@ def program_of(task: Task) -> Program:
     # what of the sums is in the objective and in each budget
     weight = h / 2
     denominator = weight * np.einsum("ni,ij,nj", c0, task.r1, c0)
-    share = BLEND * np.trace(task.r1) / 3
+    isotropic = np.trace(task.r1) / 3
     goal = np.zeros(6)
-    goal[:2] = {"coriolis": (1, 0), "blend": (1, share), "felt": (0, share)}[task.objective]
+    goal[:2] = {
+        "coriolis": (1, 0),
+        "blend": (1, BLEND * isotropic),
+        "felt": (0, isotropic),
+    }[task.objective]
     goal /= denominator
     scale = {
         RATE: (2, weight * (w0**2).sum()),
