@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from des_cli.errors import DesError, ExitCode, FileAccessError, Problem, UsageError
 from des_cli.failure import Failure
 from des_cli.job import STANDARD_STREAM, Job, JobResult
+from des_cli.model.coriolis import COMPONENTS
 
 # What needs numpy is imported when a job runs: a worker must be able to set its
 # number of BLAS threads before that, and a rejected command line needs none.
@@ -251,10 +252,12 @@ def _holds_run_of(folder: Path, profile: Profile) -> bool:
 
 def _weighted_components(profile: Profile) -> tuple[str, ...]:
     """Name the Coriolis components on which r1 puts a weight."""
-    names = {"report": ("ab3", "bb3", "cb3"), "seat": ("seat_x", "seat_y", "seat_z")}
     weights = profile.reduction.r1.diagonal()
-    pairs = zip(names[profile.reduction.axes], weights, strict=True)
-    return tuple(name for name, weight in pairs if weight != 0.0)
+    return tuple(
+        component.key
+        for component in COMPONENTS
+        if component.axes == profile.reduction.axes and weights[component.index] != 0.0
+    )
 
 
 def _cancel(futures: Iterable[Future[JobResult]]) -> None:

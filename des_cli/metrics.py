@@ -7,18 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from des_cli.kinematics.attitude import geodesic_angle
-from des_cli.kinematics.chain import chain_of, seat_rotation
+from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond
 from des_cli.model.arrays import Floats
 from des_cli.model.coriolis import COMPONENTS, Component
-from des_cli.model.machine import JOINTS
+from des_cli.model.machine import JOINTS, Seat
+from des_cli.model.metric import METRICS
 from des_cli.model.motion import DesiredMotion, Motion, integrate_sides
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
 from des_cli.model.run import Violation
 from des_cli.model.solution import Solution
 from des_cli.reduction.baseline import Baselines, joint_deviation
+from des_cli.reduction.fidelity import Deviation
 from des_cli.results.felt import felt_metrics, relative_error, rms, rms_error, tilt_error
 from des_cli.results.joints import joint_metrics
 
@@ -35,6 +36,7 @@ class Measured:
     profile: Profile
     asked: DesiredMotion
     desired: Motion
+    seat: Seat
     solution: Solution
     before: Response
     after: Response
@@ -47,6 +49,7 @@ def measure(run: Measured) -> dict[str, Any]:
     return {
         "profile": _profile(run.profile),
         "solver": _solver(run.profile, run.solution),
+        "parameters": _parameters(run),
         "coriolis": coriolis_metrics(run.asked.motion.step, run.before, run.after)
         | {"objective": {"reduction": run.baselines.reduction}},
         "fidelity": fidelity_metrics(run),
@@ -82,6 +85,25 @@ def _profile(profile: Profile) -> dict[str, Any]:
         "duration_s": float(profile.t[-1] - profile.t[0]),
         "machine": profile.machine.name,
     }
+
+
+def _parameters(run: Measured) -> dict[str, Any] | None:
+    """Return the constants that were found together with the motion, before and after."""
+    profile = run.profile
+    first, last = run.asked.motion.angle[0], run.solution.modified.angle[0]
+    constants = {
+        "seat_yaw": (profile.seat.yaw, run.seat.yaw),
+        "seat_pitch": (profile.seat.pitch, run.seat.pitch),
+        "fork_start": (first[1], last[1]),
+        "cab_start": (first[2], last[2]),
+    }
+    return {
+        name: {
+            "before_deg": float(np.degrees(constants[name][0])),
+            "after_deg": float(np.degrees(constants[name][1])),
+        }
+        for name in profile.reduction.optimise
+    } or None
 
 
 def _solver(profile: Profile, solution: Solution) -> dict[str, Any]:
@@ -159,38 +181,24 @@ def fidelity_metrics(run: Measured) -> dict[str, Any]:
     """
     record, modified = run.asked.motion, run.solution.modified
     before, after, step = run.before, run.after, record.step
-    deviation = joint_deviation(record, modified)
     square = integrate_sides(step, (modified.angle_sides - record.angle_sides) ** 2)
-    chain = chain_of(run.profile.machine, run.profile.seat)
-    turned = geodesic_angle(
-        seat_rotation(chain, record.angle), seat_rotation(chain, modified.angle)
-    )
-    angular = (step, before.seat_angular_acceleration, after.seat_angular_acceleration)
+    machine = run.profile.machine
+    chains = (chain_of(machine, run.profile.seat), chain_of(machine, run.seat))
+    deviation = Deviation(record, modified, before, after, chains, run.solution.control)
     return {
-        "joint_deviation_relative": deviation,
-        "joint_deviation_relative_squared": deviation**2,
-        "mean_square_one_minus_p": _mean_square_one_minus_p(step, run.solution.control),
+        **{key: _number(deviation.value(key)) for key in METRICS},
         "joint_rms_rad": _by_joint(np.sqrt(square / step.sum())),
         "start_error": _by_joint(modified.angle[0] - record.angle[0], "_rad")
         | _by_joint(modified.rate_start[0] - record.rate_start[0], "_rad_s"),
         "end_error_rad": _by_joint(modified.angle[-1] - record.angle[-1]),
         "end_error_rad_s": _by_joint(modified.rate_end[-1] - record.rate_end[-1]),
-        "seat_rate_deviation_relative": relative_error(step, before.seat_rate, after.seat_rate),
-        "seat_g_deviation_relative": relative_error(step, before.seat_g, after.seat_g),
-        "seat_g_rms_error_g": rms_error(step, before.seat_g, after.seat_g),
-        "seat_angular_acceleration_deviation_relative": relative_error(*angular),
-        "seat_angular_acceleration_rms_error_rad_s2": rms_error(*angular),
-        "attitude_error_max_deg": float(np.degrees(np.max(turned))),
         **tilt_error(step, before.seat_g, after.seat_g),
     }
 
 
-def _mean_square_one_minus_p(step: Floats, control: Floats) -> float | None:
-    """Return the mean of (1 - p)^2 over joints and time, None of a motion without factors."""
-    if not control.shape[1]:
-        return None
-    idle = (1.0 - np.stack([control[:-1], control[1:]], axis=1)) ** 2
-    return float(integrate_sides(step, idle.mean(axis=2)) / step.sum())
+def _number(value: float) -> float | None:
+    """Return None for what is not a number: a free motion has no factors."""
+    return None if np.isnan(value) else value
 
 
 def _executable(run: Measured) -> dict[str, Any]:

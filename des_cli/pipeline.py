@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond
 from des_cli.metrics import Measured, measure
 from des_cli.model.profile import Profile
-from des_cli.model.run import Run
+from des_cli.model.run import Check, Run
 from des_cli.model.solution import Iteration
 from des_cli.notices import find_notices
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.consistency import require_consistent
-from des_cli.reduction.limits import find_violations
-from des_cli.reduction.problem import pose_problem
-from des_cli.reduction.solve import make_executable, not_attempted, solve
+from des_cli.reduction.limits import find_occupant_violations, find_violations
+from des_cli.reduction.solve import Found, find_motion
 from des_cli.reduction.verify import verify
 
 
@@ -41,36 +41,48 @@ def reduce_profile(
     UsageError
         If the reduction asks for things that exclude each other.
     """
-    wanted = profile.reduction
-    require_consistent(wanted, profile.name)
+    require_consistent(profile.reduction, profile.name)
     asked = make_desired(profile)
-    desired, trouble = asked.motion, ""
-    if wanted.limits == "enforce":
-        desired, trouble = make_executable(profile.machine, asked.motion)
-    problem = posed = pose_problem(profile, desired)
-    if trouble:
-        solution = not_attempted(problem, trouble)
-    else:
-        posed, solution = solve(problem, wanted, on_iteration)
+    found = find_motion(profile, asked.motion, on_iteration)
+    modified = found.solution.modified
     before = respond(profile.machine, profile.seat, asked.motion)
-    after = respond(profile.machine, profile.seat, solution.modified)
-    violations = find_violations(profile.machine, asked.motion, "desired") + find_violations(
-        profile.machine, solution.modified, "modified"
-    )
+    after = respond(profile.machine, found.seat, modified)
     measured = Measured(
-        profile, asked, desired, solution, before, after, violations, compare(problem, solution)
+        profile=profile,
+        asked=asked,
+        desired=found.desired,
+        seat=found.seat,
+        solution=found.solution,
+        before=before,
+        after=after,
+        violations=(
+            *find_violations(profile.machine, asked.motion, "desired"),
+            *find_occupant_violations(
+                profile.machine, profile.seat, before, asked.motion, "desired"
+            ),
+            *find_violations(profile.machine, modified, "modified"),
+            *find_occupant_violations(profile.machine, found.seat, after, modified, "modified"),
+        ),
+        baselines=compare(found.problem, modified, chain_of(profile.machine, found.seat)),
     )
     metrics = measure(measured)
     metrics["notices"] = find_notices(asked, metrics)
     return Run(
         profile=profile,
         asked=asked,
-        desired=desired,
-        solution=solution,
+        desired=found.desired,
+        seat=found.seat,
+        solution=found.solution,
         before=before,
         after=after,
-        checks=verify(posed, solution, wanted) if solution.usable else (),
-        violations=violations,
+        checks=_checks(profile, found),
+        violations=measured.violations,
         metrics=metrics,
         notices=tuple(metrics["notices"]),
     )
+
+
+def _checks(profile: Profile, found: Found) -> tuple[Check, ...]:
+    if not found.solution.usable or found.posed is None:
+        return ()
+    return verify(found.posed, found.solution, profile.reduction)

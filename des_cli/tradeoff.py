@@ -24,10 +24,10 @@ from des_cli.model.solution import Iteration, Solution
 from des_cli.model.tradeoff import BASELINE, SOLVED, TradePoint
 from des_cli.pipeline import reduce_profile
 from des_cli.reduction.baseline import compare
+from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.limits import find_violations
 from des_cli.reduction.problem import Problem, pose_problem
 from des_cli.reduction.report_sweep import sweep
-from des_cli.reduction.solve import make_executable
 from des_cli.reduction.transcription import Transcription
 
 CONSTANT_FACTORS = (0.99, 0.98, 0.95, 0.9, 0.85, 0.8, 0.7)
@@ -92,7 +92,7 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
     asked = make_desired(profile)
     desired = asked.motion
     if profile.reduction.limits == "enforce":
-        desired, trouble = make_executable(profile.machine, desired)
+        desired, trouble = nearest_executable(profile.machine, desired)
         desired = asked.motion if trouble else desired
     wanted = replace(
         profile.reduction,
@@ -106,7 +106,7 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
         budget=(),
     )
     profile = replace(profile, reduction=wanted)
-    problem = pose_problem(profile, desired)
+    problem = pose_problem(profile, desired, asked.motion)
     points = []
     for r2 in weights or (_weight(wanted.r2),):
         weighed = replace(problem, r2=np.array([r2]))
@@ -209,13 +209,23 @@ def _measure(
     profile: Profile, asked: DesiredMotion, problem: Problem, solution: Solution
 ) -> dict[str, Any]:
     """Measure a baseline as the pipeline measures an optimum."""
-    motions = (problem.desired, solution.modified)
+    motions = (asked.motion, solution.modified)
     before, after = (respond(profile.machine, profile.seat, motion) for motion in motions)
     violations = find_violations(profile.machine, solution.modified, "modified")
-    against = compare(problem, solution)
+    against = compare(problem, solution.modified)
     return _measures(
         measure(
-            Measured(profile, asked, problem.desired, solution, before, after, violations, against)
+            Measured(
+                profile=profile,
+                asked=asked,
+                desired=problem.desired,
+                seat=profile.seat,
+                solution=solution,
+                before=before,
+                after=after,
+                violations=violations,
+                baselines=against,
+            )
         )
     )
 
@@ -227,10 +237,17 @@ def _measures(metrics: Mapping[str, Any]) -> dict[str, Any]:
         "joint_deviation_relative",
         "seat_rate_deviation_relative",
         "seat_g_rms_error_g",
+        "seat_angular_acceleration_rms_error_rad_s2",
         "attitude_error_max_deg",
     )
+    turning = metrics["felt"]["seat_angular_acceleration"]["magnitude"]
     return {
         **{f"{part}_reduction": metrics["coriolis"][part]["reduction"] for part in parts},
         **{key: metrics["fidelity"][key] for key in costs},
+        **{
+            f"seat_angular_acceleration_{kind}{column}_rad_s2": turning[f"{kind}_{when}_rad_s2"]
+            for kind in ("rms", "peak")
+            for column, when in (("_before", "before"), ("", "after"))
+        },
         "limits_ok": all(joint["ok"] for joint in metrics["limits"]["modified"].values()),
     }

@@ -159,6 +159,19 @@ def _component(before: Floats, after: Floats) -> dict[str, float]:
     }
 
 
+def _sizes(names: str, before: Floats, after: Floats, unit: str) -> dict[str, dict[str, float]]:
+    found = {}
+    for index, name in enumerate((*names, "magnitude")):
+        part = {}
+        for when, vectors in (("before", before), ("after", after)):
+            length = np.linalg.norm(vectors, axis=-1)
+            sides = length if name == "magnitude" else vectors[..., index]
+            part[f"rms_{when}_{unit}"] = math.sqrt(np.mean(np.square(sides)))
+            part[f"peak_{when}_{unit}"] = float(np.abs(sides).max())
+        found[name] = part
+    return found
+
+
 def _limits(motion: Motion) -> dict[str, dict[str, Any]]:
     rate = np.abs(motion.rate_sides).max(axis=(0, 1)).tolist()
     acceleration = np.abs(motion.acceleration).max(axis=0).tolist()
@@ -168,7 +181,11 @@ def _limits(motion: Motion) -> dict[str, dict[str, Any]]:
             "rate_limit_rad_s": LIMITS[i].rate,
             "acceleration_peak_rad_s2": acceleration[i],
             "acceleration_limit_rad_s2": LIMITS[i].acceleration,
+            "jerk_peak_rad_s3": 1.1,
+            "jerk_limit_rad_s3": None,
             "rate_step_rad_s": 0.0,
+            "at_acceleration_limit": 0.0,
+            "acceleration_sign_changes": 3,
             "ok": rate[i] <= LIMITS[i].rate and acceleration[i] <= LIMITS[i].acceleration,
         }
         for i, joint in enumerate(JOINTS)
@@ -219,12 +236,36 @@ def _metrics(name: str, control: str, before: Response, after: Response) -> dict
             "seat_g_deviation_relative": 0.0871,
             "seat_g_rms_error_g": 0.131,
             "attitude_error_max_deg": 31.2,
+            "seat_angular_acceleration_deviation_relative": 0.31,
+            "seat_angular_acceleration_rms_error_rad_s2": 0.143,
+            "tilt_error_max_deg": 6.4,
+            "tilt_error_rms_deg": 2.7,
+            "start_error": {
+                **{f"{joint}_rad": 0.0 for joint in JOINTS},
+                **{f"{joint}_rad_s": 0.0 for joint in JOINTS},
+            },
+            "end_error_rad_s": {"arm": 0.02, "fork": 0.0, "cab": 0.0},
+        },
+        "felt": {
+            "seat_rate": _sizes("pqr", before.seat_rate, after.seat_rate, "rad_s"),
+            "seat_angular_acceleration": _sizes(
+                "xyz",
+                before.seat_angular_acceleration,
+                after.seat_angular_acceleration,
+                "rad_s2",
+            ),
             "seat_g": {
                 axis: {
                     "peak_before_g": 1.4,
                     "peak_after_g": 1.2,
+                    "min_before_g": -1.4,
+                    "min_after_g": -1.2,
+                    "max_before_g": 0.9,
+                    "max_after_g": 0.8,
                     "onset_before_g_s": 0.8,
                     "onset_after_g_s": 0.7,
+                    "jump_before_g": 0.0,
+                    "jump_after_g": 0.01,
                     "rms_error_g": 0.08,
                 }
                 for axis in ("gx", "gy", "gz")

@@ -3,7 +3,9 @@
 import io
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from des_cli.model.run import Run
 from des_cli.model.tradeoff import TradePoint
 from des_cli.plots import CAPTIONS, draw_plots, draw_tradeoff
 from des_cli.plots.canvas import AFTER, BEFORE, draw, sheet, style
+from des_cli.plots.ride import limits
 from des_cli.plots.thinning import thin
 from des_cli.plots.tradeoff import _figure
 from des_cli.plots.weighted import reduction_of, weighted_component
@@ -84,6 +87,8 @@ def test_a_figure_is_of_its_run(synthetic_run: MakeRun) -> None:
     [
         ("solver", {"status": "acceptable", "converged": False}, set(CAPTIONS)),
         ("solver", {"budget": {"joint_deviation_relative": 0.13}}, {"deviation"}),
+        ("limits", {"modified": {"fork": {"jerk_limit_rad_s3": 5.0}}}, {"limits"}),
+        ("felt", {"seat_angular_acceleration": {}}, {"felt"}),
         ("executable", {"joint_change_max_rad": {"cab": 0.0123}}, {"commands"}),
         ("executable", {"joint_change_max_rad": {"cab": 1e-6}}, set()),
     ],
@@ -96,6 +101,51 @@ def test_standing_budget_and_changes_are_on_the_figures_they_belong_to(
     plain = draw_plots(columns, run.metrics)
     changed = draw_plots(columns, run.metrics | {section: run.metrics[section] | change})
     assert {name for name in plain if plain[name] != changed[name]} == figures
+
+
+def test_a_motion_without_factors_has_no_figure_of_them(synthetic_run: MakeRun) -> None:
+    run = synthetic_run(11)
+    free = replace(run, solution=replace(run.solution, control=np.empty((11, 0))))
+    figures = draw_plots(trajectory_columns(free), run.metrics)
+    assert list(figures) == [name for name in CAPTIONS if name != "factor"]
+
+
+def panel_of_limits(peak: float, limit: float | None) -> Any:
+    """The arm's acceleration in the figure of limits, of a motion with this peak."""
+    t = np.linspace(0.0, 1.0, 21)
+    columns = {"t_s": t} | {
+        f"{which}_{joint}_{unit}": peak * np.sin(7.0 * t)
+        for which in ("asked", "modified")
+        for joint in ("arm", "fork", "cab")
+        for unit in ("rad_s2", "rad_s3")
+    }
+    arm = {"acceleration_limit_rad_s2": limit, "acceleration_peak_rad_s2": peak}
+    with style():
+        return limits(columns, {"limits": {"modified": {"arm": arm}}})[0].axes[0]
+
+
+@pytest.mark.parametrize(
+    ("peak", "words", "near"),
+    [(0.6, "peak at 95 %", True), (0.9, "peak at 143 %", True), (0.01, "peak at 2 %", False)],
+)
+def test_a_limit_is_shaded_and_on_the_paper_where_it_is_near(
+    peak: float, words: str, near: bool
+) -> None:
+    panel = panel_of_limits(peak, 0.63)
+    assert panel.get_title(loc="right") == f"acceleration: limit ±0.63 rad/s², {words}"
+    low, high = panel.get_ylim()
+    assert low < -0.99 * peak < 0.99 * peak < high
+    assert (low < -0.63 and high > 0.63) == near
+    band, above, below = ((box.get_y(), box.get_y() + box.get_height()) for box in panel.patches)
+    assert band == pytest.approx((-0.63, 0.63))
+    assert above == pytest.approx((0.63, max(high, 0.63)))
+    assert below == pytest.approx((min(low, -0.63), -0.63))
+
+
+def test_a_joint_without_a_limit_is_told_so() -> None:
+    panel = panel_of_limits(0.5, None)
+    assert panel.get_title(loc="right") == "acceleration: no limit"
+    assert not panel.patches
 
 
 def test_pyplot_stays_out(synthetic_run: MakeRun) -> None:
@@ -117,6 +167,7 @@ def test_metrics_of_a_stranger_do_not_stop_the_figures(synthetic_run: MakeRun) -
     for metrics in (
         {},
         {"solver": 1, "coriolis": []},
+        {"limits": {"modified": {"arm": {"jerk_limit_rad_s3": -1.0, "jerk_peak_rad_s3": "x"}}}},
         {"solver": {"axes": ["report"], "r1": "two"}, "coriolis": {"bb3": {"reduction": "much"}}},
         {
             "solver": {"status": "$x_$", "converged": False, "budget": {"$a_$": 1.0}},
@@ -270,6 +321,20 @@ def test_the_abscissa_is_what_was_budgeted() -> None:
     assert words_in(points) == ["0.1 g"]
 
 
+def test_a_free_motion_has_a_curve_of_its_own_and_may_be_bounded_in_what_is_felt() -> None:
+    error = "seat_angular_acceleration_rms_error_rad_s2"
+    points = [
+        replace(point, **{error: 3 * point.joint_deviation_relative})
+        for point in trade("optimum", "free", error, (0.15, 0.05, 0.6), (0.3, 0.1, 0.8))
+    ]
+    with style():
+        axes = _figure(points, "title").axes[0]
+    assert axes.get_xlabel().endswith("[rad/s²]")
+    np.testing.assert_allclose(axes.get_lines()[-1].get_xydata(), [[0.15, 60], [0.3, 80]])
+    assert words_in(points) == ["0.15 rad/s²", "0.3 rad/s²"]
+    assert area(picture(draw_tradeoff(points + JOINT, "cobra")), (0, 158, 115)) > 100
+
+
 def test_a_trade_off_without_a_solution_is_still_drawn() -> None:
     nothing = TradePoint("optimum", "scalar", "r2", 1.0, "infeasible")
     assert picture(draw_tradeoff([nothing], "cobra")).width > 1000
@@ -281,5 +346,5 @@ def test_equal_points_give_equal_bytes() -> None:
     assert first == second
     assert draw_tradeoff(JOINT, "cobra") != first
     assert Image.open(io.BytesIO(first)).info["Title"] == (
-        "Coriolis reduction against deviation: cobra"
+        "Reduction of the cross-coupling against deviation: cobra"
     )

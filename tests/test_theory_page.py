@@ -53,7 +53,7 @@ def test_names_in_code_exist() -> None:
     """``module.function`` and ``Class.field`` of the tables."""
     modules = {
         path.stem: ".".join(path.relative_to(ROOT).with_suffix("").parts)
-        for folder in ("model", "kinematics", "study")
+        for folder in ("study", "model", "kinematics")  # whose coriolis is meant
         for path in (ROOT / "des_cli" / folder).glob("*.py")
     } | {"units": "des_cli.units"}
     fields = set(StateReport.__dataclass_fields__)

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, get_args
 
 from des_cli.job import JobResult
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
 from des_cli.results.budgets import spent_budgets
+from des_cli.results.ends import When, end_words
 from des_cli.results.reading import number as read
 from des_cli.results.reading import section
 
 _G_AXES = ("gx", "gy", "gz")
 _KINDS = ("peak", "limit")
-
-_MATCHED = 0.01
-"""Difference at an end [deg, deg/s] below which it is the profile's own."""
 
 _TOTAL = "felt.seat_angular_acceleration.magnitude"
 
@@ -120,29 +118,12 @@ def _force(metrics: Mapping[str, Any]) -> str:
 
 
 def _ends(metrics: Mapping[str, Any]) -> str:
-    """Say how far start and end are off, by the joint that is off most."""
-    parts = []
-    for when, paths in (
-        ("start", ("fidelity.start_error.{}_rad", "fidelity.start_error.{}_rad_s")),
-        ("end", ("fidelity.end_error_rad.{}", "fidelity.end_error_rad_s.{}")),
-    ):
-        sizes = []
-        for path, unit in zip(paths, ("deg", "deg/s"), strict=True):
-            off = {joint: read(metrics, path.format(joint)) for joint in JOINTS}
-            known = {joint: math.degrees(v) for joint, v in off.items() if v is not None}
-            if known:
-                worst = max(known, key=lambda joint: abs(known[joint]))
-                size = known[worst]
-                matched = abs(size) < _MATCHED
-                sizes.append("0" if matched else f"{worst} {size:+.3g} {unit}")
-        if sizes:
-            same = set(sizes) == {"0"}
-            parts.append(f"{when} {'as in the profile' if same else 'off by ' + _nonzero(sizes)}")
-    return ", ".join(parts)
-
-
-def _nonzero(sizes: list[str]) -> str:
-    return " and ".join(size for size in sizes if size != "0")
+    told: list[str] = []
+    for when in get_args(When):
+        words = end_words(metrics, when)
+        if words:
+            told.append(f"{when} {words if words.startswith('as') else f'off by {words}'}")
+    return ", ".join(told)
 
 
 def limits_used(metrics: Mapping[str, Any] | None) -> str:

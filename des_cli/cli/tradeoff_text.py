@@ -19,12 +19,16 @@ _COLUMNS = (
     ("joints", "joint_deviation_relative", percent),
     ("rate", "seat_rate_deviation_relative", percent),
     ("G rms [g]", "seat_g_rms_error_g", number),
+    ("α error", "seat_angular_acceleration_rms_error_rad_s2", number),
+    ("α rms", "seat_angular_acceleration_rms_rad_s2", number),
+    ("α peak", "seat_angular_acceleration_peak_rad_s2", number),
     ("turn [deg]", "attitude_error_max_deg", number),
 )
 _WIDTH = 11
 _TITLES = {
     "report-sweep": "study's single sweep",
     "constant-p": "constant p",
+    "free": "optimum, the joints moving freely",
     "scalar": "optimum, one factor for all joints",
     "per-joint": "optimum, one factor for each joint",
 }
@@ -35,7 +39,11 @@ def points_text(points: Sequence[TradePoint], about: str) -> str:
 
     A minus before a reduction is a growth.
     """
-    lines = [about, "reduction of the Coriolis; deviation of joints, seat rate, seat G, attitude"]
+    lines = [
+        about,
+        "reduction of the cross-coupling; deviation of joints, seat rate, seat G; total angular "
+        f"acceleration α at the seat [rad/s²]{_before(points)}; attitude",
+    ]
     for title, curve in groupby(points, key=_title):
         lines += ["", *_curve(title, list(curve))]
     return "\n".join(line.rstrip() for line in lines) + "\n"
@@ -47,9 +55,23 @@ def point_line(point: TradePoint) -> str:
     if point.objective_reduction is None:
         return f"{name}: {point.status}: {point.message}"
     steps = "1 iteration" if point.iterations == 1 else f"{point.iterations} iterations"
-    gained = f"{change(point.objective_reduction)} at joints {_joints(point)}"
+    turning = number(point.seat_angular_acceleration_rms_rad_s2)
+    gained = (
+        f"{change(point.objective_reduction)} at joints {_joints(point)}, "
+        f"seat rate {percent(point.seat_rate_deviation_relative)}, α {turning} rad/s² rms"
+    )
     why = f" ({point.message})" if point.status == "unverified" else ""
     return f"{name}: {point.status} in {steps}, {gained}{why}"
+
+
+def _before(points: Sequence[TradePoint]) -> str:
+    """Say what the total angular acceleration is before any reduction, the same for all."""
+    for point in points:
+        rms = point.seat_angular_acceleration_rms_before_rad_s2
+        peak = point.seat_angular_acceleration_peak_before_rad_s2
+        if rms is not None and peak is not None:
+            return f", before {number(rms)} rms and {number(peak)} peak"
+    return ""
 
 
 def _joints(point: TradePoint) -> str:

@@ -95,12 +95,14 @@ def trajectory_columns(run: Run) -> dict[str, Floats]:
         ),
         *_motion_blocks(run.asked.motion),
     ]
-    names = trajectory_names(run.solution.control.shape[1])
+    names = trajectory_names(
+        run.solution.control.shape[1], adjoint=run.solution.adjoint.shape[1] > 0
+    )
     vectors = (block[:, i] for block in blocks for i in range(block.shape[1]))
     return dict(zip(names, vectors, strict=True))
 
 
-def trajectory_names(joints_of_p: int) -> tuple[str, ...]:
+def trajectory_names(joints_of_p: int, *, adjoint: bool = True) -> tuple[str, ...]:
     """Return the names of ``trajectory_columns``, in their order.
 
     Parameters
@@ -108,6 +110,8 @@ def trajectory_names(joints_of_p: int) -> tuple[str, ...]:
     joints_of_p : int
         1 for a factor p that all joints share, 3 for one per joint, 0 for a motion
         that is no multiple of the desired rates.
+    adjoint : bool
+        Whether there is one: a motion whose dynamics were eliminated has none.
     """
     vectors = [
         *((f"coriolis_{each.key}", "rad_s2") for each in COMPONENTS if each.axes == "report"),
@@ -122,7 +126,7 @@ def trajectory_names(joints_of_p: int) -> tuple[str, ...]:
         *_motion_names("desired"),
         *_motion_names("modified"),
         *(["p"] if joints_of_p == 1 else [f"p_{joint}" for joint in JOINTS[:joints_of_p]]),
-        *(f"adjoint_{joint}" for joint in JOINTS),
+        *(f"adjoint_{joint}" for joint in JOINTS if adjoint),
         *(f"{stem}_{when}_{unit}" for stem, unit in vectors for when in ("before", "after")),
         *_motion_names("asked"),
     )

@@ -32,14 +32,8 @@ class SeatTurn:
 
     def of(self, seat: SeatMotion) -> SeatMotion:
         """Return the derivative, which has the same form, but for the force (`mixed_force`)."""
-        return SeatMotion(
-            arm=np.einsum("ij,tjm->tim", self.twist, seat.arm),
-            fork=np.einsum("ij,tjm->tim", self.twist, seat.fork),
-            gravity=np.einsum("ij,tjm->tim", self.vector, seat.gravity),
-            cab=self.twist @ seat.cab,
-            rate=seat.rate,
-            acceleration=seat.acceleration,
-        )
+        forms = seat.forms.changed(self.twist, self.vector)
+        return SeatMotion(forms, seat.functions, seat.rate, seat.acceleration)
 
 
 def mixed_force(seat: SeatMotion, turned: SeatMotion) -> Floats:

@@ -27,7 +27,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from des_cli.kinematics.chain import Chain
-from des_cli.kinematics.trig_polynomial import TrigPolynomial, basis
+from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.model.arrays import Floats
 
 VARIABLES = 8
@@ -36,60 +36,94 @@ depends on, in the order of every variable axis."""
 
 ANGLES, RATES, ACCELERATIONS = slice(0, 2), slice(2, 5), slice(5, 8)
 
-_ARM = ((), (1,), (2,), (1, 1), (1, 2), (2, 2), (1, 1, 1), (1, 1, 2), (1, 2, 2), (2, 2, 2))
-_FORK = ((), (2,), (2, 2), (2, 2, 2))
-_GRAVITY = _ARM[:6]
+_LOW = ((), (1,), (2,))
+_HIGH = ((1, 1), (1, 2), (2, 2), (1, 1, 1), (1, 1, 2), (1, 2, 2), (2, 2, 2))
 # places in the tables of the derivatives by (theta2, theta3)
-_0, _2, _3, _22, _23, _33, _222, _223, _233, _333 = range(10)
-_F0, _F3, _F33, _F333 = range(4)
+_0, _2, _3 = range(3)
+_22, _23, _33 = range(3)
+
+_ROWS = ((0, 1, 2, 3, 4), (8, 9, 10, 11), (15, 16, 17), (21, 22), (26,))
+"""Where the pairs of the first five variables stand in the upper triangle of all eight."""
 
 _VERTICAL = 1e-12
 """Largest change of gravity along seat axes per radian of the arm, relative to gravity."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SeatMotion:
-    """The seat's motion at m points, and its first derivatives.
+    """The seat's motion at m points, and its derivatives, computed when they are asked for.
 
     Parameters
     ----------
-    arm : (10, 6, m) array
-        S1 and its partial derivatives up to the third order.
-    fork : (4, 6, m) array
-        S2 and its derivatives in theta3.
-    gravity : (6, 3, m) array
-        Gravity's reaction R' g z0 and its derivatives up to the second order [m/s^2].
-    cab : (6, 1) array
-        S3.
+    forms : SeatForms
+    functions : (9, m) array
+        The basis at the points.
     rate, acceleration : (3, m) array
         Of the joints [rad/s], [rad/s^2].
     """
 
-    arm: Floats
-    fork: Floats
-    gravity: Floats
-    cab: Floats
+    forms: SeatForms
+    functions: Floats
     rate: Floats
     acceleration: Floats
+
+    @cached_property
+    def arm(self) -> Floats:
+        """S1 and its first derivatives by theta2 and theta3, (3, 6, m)."""
+        return self._table(self.forms.arm)
+
+    @cached_property
+    def arm_beyond(self) -> Floats:
+        """Derivatives of S1 by 22, 23, 33, 222, 223, 233 and 333, (7, 6, m)."""
+        return self._table(self.forms.arm_beyond)
+
+    @cached_property
+    def fork(self) -> Floats:
+        """S2 and its first derivative by theta3, (2, 6, m)."""
+        return self._table(self.forms.fork)
+
+    @cached_property
+    def fork_beyond(self) -> Floats:
+        """Second and third derivative of S2 by theta3, (2, 6, m)."""
+        return self._table(self.forms.fork_beyond)
+
+    @cached_property
+    def gravity(self) -> Floats:
+        """Gravity's reaction R' g z0 and its first derivatives, (3, 3, m) [m/s^2]."""
+        return self._table(self.forms.gravity, 3)
+
+    @cached_property
+    def gravity_beyond(self) -> Floats:
+        """Its derivatives by 22, 23 and 33, (3, 3, m)."""
+        return self._table(self.forms.gravity_beyond, 3)
+
+    @property
+    def cab(self) -> Floats:
+        """S3, (6, 1)."""
+        return self.forms.cab
+
+    def _table(self, coefficients: Floats, size: int = 6) -> Floats:
+        values = coefficients @ self.functions[: coefficients.shape[1]]
+        return np.asarray(values.reshape(-1, size, values.shape[1]))
 
     @cached_property
     def twist(self) -> Floats:
         """V, (6, m) [rad/s; m/s]."""
         a, f, q = self.rate
-        return np.asarray(self.arm[_0] * a + self.fork[_F0] * f + self.cab * q)
+        return np.asarray(self.arm[_0] * a + self.fork[0] * f + self.cab * q)
 
     @cached_property
     def products(self) -> Floats:
         """The rate products in V', (6, m); their angular part is c."""
         a, f, q = self.rate
         spun = self.arm[_2] * f + self.arm[_3] * q
-        return np.asarray(spun * a + self.fork[_F3] * (f * q))
+        return np.asarray(spun * a + self.fork[1] * (f * q))
 
     @cached_property
     def twist_rate(self) -> Floats:
         """V', (6, m) [rad/s^2; m/s^2]."""
         a, f, q = self.acceleration
-        linear = self.arm[_0] * a + self.fork[_F0] * f + self.cab * q
+        linear = self.arm[_0] * a + self.fork[0] * f + self.cab * q
         return np.asarray(linear + self.products)
 
     @cached_property
@@ -105,22 +139,22 @@ class SeatMotion:
         slope = np.empty((5, *self.twist.shape))
         np.multiply(self.arm[_2], a, out=slope[0])
         np.multiply(self.arm[_3], a, out=slope[1])
-        slope[1] += self.fork[_F3] * f
-        slope[2], slope[3], slope[4] = self.arm[_0], self.fork[_F0], self.cab
+        slope[1] += self.fork[1] * f
+        slope[2], slope[3], slope[4] = self.arm[_0], self.fork[0], self.cab
         return slope
 
     @cached_property
     def products_slope(self) -> Floats:
         """Derivatives of the rate products by theta2, theta3 and the rates, (5, 6, m)."""
         a, f, q = self.rate
-        arm, fork = self.arm, self.fork
+        arm, fork, beyond = self.arm, self.fork, self.arm_beyond
         slope = np.empty((5, *self.twist.shape))
         af, aq = a * f, a * q
-        slope[0] = arm[_22] * af + arm[_23] * aq
-        slope[1] = arm[_23] * af + arm[_33] * aq + fork[_F33] * (f * q)
+        slope[0] = beyond[_22] * af + beyond[_23] * aq
+        slope[1] = beyond[_23] * af + beyond[_33] * aq + self.fork_beyond[0] * (f * q)
         slope[2] = arm[_2] * f + arm[_3] * q
-        slope[3] = arm[_2] * a + fork[_F3] * q
-        slope[4] = arm[_3] * a + fork[_F3] * f
+        slope[3] = arm[_2] * a + fork[1] * q
+        slope[4] = arm[_3] * a + fork[1] * f
         return slope
 
     @cached_property
@@ -131,8 +165,8 @@ class SeatMotion:
         slope[:5] = self.products_slope
         slope[0] += self.arm[_2] * a
         slope[1] += self.arm[_3] * a
-        slope[1] += self.fork[_F3] * f
-        slope[5], slope[6], slope[7] = self.arm[_0], self.fork[_F0], self.cab
+        slope[1] += self.fork[1] * f
+        slope[5], slope[6], slope[7] = self.arm[_0], self.fork[0], self.cab
         return slope
 
     @cached_property
@@ -172,40 +206,44 @@ class SeatMotion:
         on_twist[3:] = cross(push, self.twist[:3])
         on_products = np.concatenate([products + along, push])
         on_rate = np.concatenate([along, push])
-        arm, fork = self.arm, self.fork
-        v = _contract(arm[_2 : _33 + 1], on_twist)  # 2, 3, 22, 23, 33
-        r = _contract(arm[_2 : _33 + 1], on_rate)
-        p = _contract(arm[_2:], on_products)  # 2, 3, 22, 23, 33, 222, 223, 233, 333
-        fork_v = _contract(fork[_F3 : _F33 + 1], on_twist)  # 3, 33
-        fork_r = _contract(fork[_F3 : _F33 + 1], on_rate)
-        fork_p = _contract(fork[_F3:], on_products)  # 3, 33, 333
+        first, second = self.arm[_2:], self.arm_beyond[: _33 + 1]
+        # multipliers times the axes' derivatives: 2, 3; 22, 23, 33; and 222 ... 333
+        v, v2 = _contract(first, on_twist), _contract(second, on_twist)
+        r, r2 = _contract(first, on_rate), _contract(second, on_rate)
+        p, p2 = _contract(first, on_products), _contract(self.arm_beyond, on_products)
+        fork_1, fork_2 = self.fork[1:], self.fork_beyond
+        fork_v = np.concatenate([_contract(fork_1, on_twist), _contract(fork_2[:1], on_twist)])
+        fork_r = np.concatenate([_contract(fork_1, on_rate), _contract(fork_2[:1], on_rate)])
+        fork_p = np.concatenate([_contract(fork_1, on_products), _contract(fork_2, on_products)])
         a, f, q = self.rate
         a2, f2, _ = self.acceleration
         af, aq, fq = a * f, a * q, f * q
         h = np.zeros((VARIABLES * (VARIABLES + 1) // 2, m))
-        h[0] = a * v[2] + a2 * r[2] + af * p[5] + aq * p[6]  # theta2 theta2
-        h[1] = a * v[3] + a2 * r[3] + af * p[6] + aq * p[7]  # theta2 theta3
-        h[2] = v[0] + f * p[2] + q * p[3]
-        h[3] = a * p[2]
-        h[4] = a * p[3]
+        h[0] = a * v2[0] + a2 * r2[0] + af * p2[3] + aq * p2[4]  # theta2 theta2
+        h[1] = a * v2[1] + a2 * r2[1] + af * p2[4] + aq * p2[5]  # theta2 theta3
+        h[2] = v[0] + f * p2[0] + q * p2[1]
+        h[3] = a * p2[0]
+        h[4] = a * p2[1]
         h[5] = r[0]
-        h[8] = a * v[4] + a2 * r[4] + af * p[7] + aq * p[8]  # theta3 theta3
+        h[8] = a * v2[2] + a2 * r2[2] + af * p2[5] + aq * p2[6]  # theta3 theta3
         h[8] += f * fork_v[1] + f2 * fork_r[1] + fq * fork_p[2]
-        h[9] = v[1] + f * p[3] + q * p[4]
-        h[10] = fork_v[0] + a * p[3] + q * fork_p[1]
-        h[11] = a * p[4] + f * fork_p[1]
+        h[9] = v[1] + f * p2[1] + q * p2[2]
+        h[10] = fork_v[0] + a * p2[1] + q * fork_p[1]
+        h[11] = a * p2[2] + f * fork_p[1]
         h[12] = r[1]
         h[13] = fork_r[0]
         h[16] = p[0]  # arm rate, fork rate
         h[17] = p[1]
         h[22] = fork_p[0]
         if force is not None:
-            h[0] += np.sum(force * self.gravity[_22], axis=0)
-            h[1] += np.sum(force * self.gravity[_23], axis=0)
-            h[8] += np.sum(force * self.gravity[_33], axis=0)
+            h[0] += np.sum(force * self.gravity_beyond[_22], axis=0)
+            h[1] += np.sum(force * self.gravity_beyond[_23], axis=0)
+            h[8] += np.sum(force * self.gravity_beyond[_33], axis=0)
             by = self.twist_slope
             turned = cross(by[:, 3:], force)
-            for k, row in enumerate(((0, 1, 2, 3, 4), (8, 9, 10, 11), (15, 16, 17), (21, 22), (26,))):
+            for k, row in enumerate(
+                ((0, 1, 2, 3, 4), (8, 9, 10, 11), (15, 16, 17), (21, 22), (26,))
+            ):
                 both = np.einsum("cm,lcm->lm", by[k, :3], turned[k:])
                 both += np.einsum("cm,lcm->lm", turned[k], by[k:, :3])
                 h[list(row)] += both
@@ -214,41 +252,59 @@ class SeatMotion:
 
 @dataclass(frozen=True, eq=False)
 class SeatForms:
-    """Coefficients from which the seat's motion is evaluated.
+    """Coefficients from which the seat's motion is evaluated, against the basis.
 
     Parameters
     ----------
-    arm : (60, 9) array
-    fork : (24, 3) array
+    arm, arm_beyond : (18, 9), (42, 9) array
+        S1 with its first derivatives, and the higher ones.
+    fork, fork_beyond : (12, 3), (12, 3) array
     cab : (6, 1) array
-    gravity : (18, 9) array
+    gravity, gravity_beyond : (9, 9), (9, 9) array
     vertical : bool
         Whether the arm turns about the vertical, as all of this supposes.
     """
 
     arm: Floats
+    arm_beyond: Floats
     fork: Floats
+    fork_beyond: Floats
     cab: Floats
     gravity: Floats
+    gravity_beyond: Floats
     vertical: bool
 
     def at(self, z: Floats) -> SeatMotion:
-        """Evaluate at points.
+        """Return the motion at points.
 
         Parameters
         ----------
         z : (8, m) array
             theta2, theta3, rates, accelerations [rad, rad/s, rad/s^2].
         """
-        m = z.shape[1]
-        functions = basis(np.concatenate([z[:1], z]).T[:, :3], (1, 2))
-        return SeatMotion(
-            arm=(self.arm @ functions).reshape(10, 6, m),
-            fork=(self.fork @ functions[:3]).reshape(4, 6, m),
-            gravity=(self.gravity @ functions).reshape(6, 3, m),
-            cab=self.cab,
-            rate=z[RATES],
-            acceleration=z[ACCELERATIONS],
+        cosine, sine = np.cos(z[ANGLES]), np.sin(z[ANGLES])
+        functions = np.empty((9, z.shape[1]))
+        functions[0], functions[1], functions[2] = 1.0, cosine[1], sine[1]
+        np.multiply(functions[:3], cosine[0], out=functions[3:6])
+        np.multiply(functions[:3], sine[0], out=functions[6:])
+        return SeatMotion(self, functions, z[RATES], z[ACCELERATIONS])
+
+    def changed(self, twist: Floats, vector: Floats) -> SeatForms:
+        """Return the forms with every twist and every vector along seat axes mapped.
+
+        Parameters
+        ----------
+        twist : (6, 6) array
+        vector : (3, 3) array
+        """
+        arm, arm_beyond, fork, fork_beyond = (
+            _mapped(twist, table)
+            for table in (self.arm, self.arm_beyond, self.fork, self.fork_beyond)
+        )
+        gravity, beyond = (_mapped(vector, t) for t in (self.gravity, self.gravity_beyond))
+        cab = twist @ self.cab
+        return SeatForms(
+            arm, arm_beyond, fork, fork_beyond, cab, gravity, beyond, self.vertical
         )
 
 
@@ -259,12 +315,26 @@ def seat_forms(chain: Chain, gravity: float) -> SeatForms:
     up = TrigPolynomial(gravity * chain.transform.coefficient[..., 2, :3])
     turning = np.max(np.abs(up.derivative(0).coefficient))
     return SeatForms(
-        arm=_table(arm, _ARM),
-        fork=np.ascontiguousarray(_table(fork, _FORK)[:, :3]),
+        arm=_table(arm, _LOW),
+        arm_beyond=_table(arm, _HIGH),
+        fork=_in_theta3(_table(fork, ((), (2,)))),
+        fork_beyond=_in_theta3(_table(fork, ((2, 2), (2, 2, 2)))),
         cab=cab.coefficient[0, 0, 0][:, None],
-        gravity=_table(up, _GRAVITY),
+        gravity=_table(up, _LOW),
+        gravity_beyond=_table(up, _HIGH[:3]),
         vertical=bool(turning <= _VERTICAL * max(gravity, 1.0)),
     )
+
+
+def _in_theta3(table: Floats) -> Floats:
+    """Return the part of a table against (1, c3, s3)."""
+    return np.ascontiguousarray(table[:, :3])
+
+
+def _mapped(matrix: Floats, table: Floats) -> Floats:
+    """Return a table whose blocks of components are mapped by a matrix."""
+    blocks = table.reshape(-1, len(matrix), table.shape[1])
+    return np.ascontiguousarray((matrix @ blocks).reshape(table.shape))
 
 
 def _screw(chain: Chain, joint: int) -> TrigPolynomial:
@@ -313,15 +383,14 @@ def _table(polynomial: TrigPolynomial, orders: tuple[tuple[int, ...], ...]) -> F
 
 def cross(one: Floats, other: Floats) -> Floats:
     """Return the cross product of vectors whose component is the last axis but one."""
-    one, other = np.broadcast_arrays(one, other)
+    product = np.empty(np.broadcast_shapes(one.shape, other.shape))
     x1, y1, z1 = one[..., 0, :], one[..., 1, :], one[..., 2, :]
     x2, y2, z2 = other[..., 0, :], other[..., 1, :], other[..., 2, :]
-    product = np.empty(one.shape)
-    product[..., 0, :] = y1 * z2 - z1 * y2
-    product[..., 1, :] = z1 * x2 - x1 * z2
-    product[..., 2, :] = x1 * y2 - y1 * x2
+    np.subtract(y1 * z2, z1 * y2, out=product[..., 0, :])
+    np.subtract(z1 * x2, x1 * z2, out=product[..., 1, :])
+    np.subtract(x1 * y2, y1 * x2, out=product[..., 2, :])
     return product
 
 
 def _contract(table: Floats, multiplier: Floats) -> Floats:
-    return np.einsum("tcm,cm->tm", table, multiplier)
+    return np.asarray(np.einsum("tcm,cm->tm", table, multiplier))

@@ -10,6 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 Floats: TypeAlias = NDArray[np.float64]
 """Double-precision array; the docstring at its use gives shape and unit."""
 
+Indices: TypeAlias = NDArray[np.intp]
+"""Array of whole numbers that index another one."""
+
 Flags: TypeAlias = NDArray[np.bool_]
 """Boolean array."""
 

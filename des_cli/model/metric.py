@@ -16,6 +16,8 @@ MetricKey: TypeAlias = Literal[
     "seat_g_rms_error_g",
     "seat_angular_acceleration_deviation_relative",
     "seat_angular_acceleration_rms_error_rad_s2",
+    "seat_angular_acceleration_rms_ratio",
+    "seat_angular_acceleration_peak_ratio",
     "attitude_error_max_deg",
 ]
 
@@ -58,6 +60,8 @@ METRICS: Mapping[MetricKey, Metric] = MappingProxyType(
             Metric(
                 "seat_angular_acceleration_rms_error_rad_s2", "angular acceleration error", "rad/s²"
             ),
+            Metric("seat_angular_acceleration_rms_ratio", "angular acceleration rms", "times"),
+            Metric("seat_angular_acceleration_peak_ratio", "angular acceleration peak", "times"),
             Metric("attitude_error_max_deg", "attitude", "deg"),
         )
     }

@@ -81,8 +81,12 @@ class BodyRates:
 FELT_BUDGETS = (
     Budget("seat_g_rms_error_g", 0.05),
     Budget("seat_rate_deviation_relative", 0.1),
+    Budget("seat_angular_acceleration_rms_ratio", 1.05),
+    Budget("seat_angular_acceleration_peak_ratio", 1.1),
 )
-"""What a silent profile may change of what the pilot feels."""
+"""What a silent profile may change of what the pilot feels: G and rate by so much, and the
+total angular acceleration must not grow by more than what nobody notices. Without the last
+two a motion may end, or begin, with a jerk that no integral over the whole of it sees."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
 
 from des_cli.errors import NoSolutionError, NotReleasedError, Problem
-from des_cli.model.machine import Joint
+from des_cli.model.machine import Joint, Seat
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
@@ -112,6 +112,8 @@ class Run:
         What the profile asks for.
     desired : Motion
         The same, or the nearest motion inside the limits where these are enforced.
+    seat : Seat
+        As fixed in the modified motion.
     solution : Solution
     before, after : Response
         Of the motion that the profile asks for, and of the modified one.
@@ -129,6 +131,7 @@ class Run:
     profile: Profile
     asked: DesiredMotion
     desired: Motion
+    seat: Seat
     solution: Solution
     before: Response
     after: Response

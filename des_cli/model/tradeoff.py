@@ -26,7 +26,7 @@ class TradePoint:
     algorithm : {"optimum", "report-sweep", "constant-p"}
         The last two are baselines: the study's single sweep, and one constant
         factor on all rates.
-    control : {"scalar", "per-joint"}
+    control : {"free", "scalar", "per-joint"}
     swept : str
         What was varied: the metric of a budget, ``r2`` or ``p``.
     value : float
@@ -39,6 +39,11 @@ class TradePoint:
         the Coriolis vector.
     joint_deviation_relative, ... : float or None
         As in the ``fidelity`` of the metrics.
+    seat_angular_acceleration_rms_rad_s2, ..._peak_rad_s2 : float or None
+        Size of the total angular acceleration of the modified motion, as in ``felt``
+        of the metrics.
+    seat_angular_acceleration_rms_before_rad_s2, ..._peak_before_rad_s2 : float or None
+        The same of what the profile asks for.
     cost : float or None
         J. Of a budget without the price of its measure.
     iterations : int
@@ -66,6 +71,11 @@ class TradePoint:
     joint_deviation_relative: float | None = None
     seat_rate_deviation_relative: float | None = None
     seat_g_rms_error_g: float | None = None
+    seat_angular_acceleration_rms_error_rad_s2: float | None = None
+    seat_angular_acceleration_rms_before_rad_s2: float | None = None
+    seat_angular_acceleration_rms_rad_s2: float | None = None
+    seat_angular_acceleration_peak_before_rad_s2: float | None = None
+    seat_angular_acceleration_peak_rad_s2: float | None = None
     attitude_error_max_deg: float | None = None
     cost: float | None = None
     iterations: int = 0

@@ -130,7 +130,8 @@ def sheet(
         top=1 - TOP / total,
         bottom=BOTTOM / total,
         hspace=GAP / height,
-        wspace=0.12 if same_scale else 0.2,
+        # ordinates of their own need room for numbers and a label in each column
+        wspace=0.12 if same_scale else 0.12 + 0.1 * columns,
     )
     line = 1 - 0.2 / total
     figure.text(0.12 / WIDTH, line, title, va="center", ha="left", fontsize=11, fontweight="bold")
@@ -213,6 +214,13 @@ def set_span(axes: Axes, values: Sequence[Floats], floor: float) -> None:
     half = max(0.54 * (high - low), 0.5 * floor)
     middle = 0.5 * (low + high)
     axes.set_ylim(middle - half, middle + half)
+
+
+def note(panel: Axes, words: str) -> None:
+    """Write a few words above the right end of a panel."""
+    # no mathematics: a stranger's words may hold dollar signs
+    look: dict[str, Any] = {"fontsize": 8, "color": "#5A5A5A", "parse_math": False}
+    panel.set_title(words, loc="right", pad=3, **look)
 
 
 def png(figure: Figure, title: str) -> bytes:

@@ -1,8 +1,9 @@
 """Which figures there are, and what each of them shows.
 
 Every figure is a function of the columns of ``trajectory.parquet`` and of the
-content of ``metrics.json``; ``before`` belongs to the desired motion and
-``after`` to the modified one.
+content of ``metrics.json``; ``before`` belongs to the motion that the profile asks for and
+``after`` to the modified one. Where the machine cannot make the former, the solver starts
+from the nearest one that it can; the figures show the profile's own.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from des_cli.model.arrays import Floats
+from des_cli.model.coriolis import COMPONENTS, ComponentKey
 from des_cli.model.machine import JOINTS
 from des_cli.plots.canvas import (
     AFTER,
@@ -25,12 +27,14 @@ from des_cli.plots.canvas import (
     MODIFIED,
     Pen,
     draw,
+    note,
     png,
     set_span,
     sheet,
     stamp,
     style,
 )
+from des_cli.plots.ride import felt, limits
 from des_cli.plots.standing import budget_words, change_words, status_words
 from des_cli.plots.weighted import reduction_of, weighted_component
 from des_cli.units import split_unit
@@ -39,33 +43,34 @@ Columns: TypeAlias = Mapping[str, Floats]
 Metrics: TypeAlias = Mapping[str, Any]
 
 CAPTIONS: Mapping[str, str] = {
-    "commands": "What the machine is commanded: the arm's rate, the angles of fork and cab.",
-    "coriolis": "The Coriolis component that the weight looks at, and the whole vector.",
-    "coriolis_components": (
-        "All components on one scale: along the inertial axes of the study (left) and along "
-        "the axes of the seat, which the pilot feels (right)."
+    "felt": (
+        "What the pilot feels: the seat's rates of roll, pitch and yaw, its total angular "
+        "acceleration α = dW/dt, and the G-vector, gravity included, each with its size below."
     ),
+    "coriolis": "The cross-coupling: the component that the weight looks at, and the whole vector.",
+    "coriolis_components": (
+        "All components of the cross-coupling on one scale: along the inertial axes of the study "
+        "(left) and along the axes of the seat, which the pilot feels (right)."
+    ),
+    "commands": "What the machine is commanded: the arm's rate, the angles of fork and cab.",
+    "limits": "How hard and how smoothly the joints are driven, within the machine's limits.",
+    "deviation": "How far the modified joint angles are from the desired ones.",
     "factor": "The factor p on the joint rates; 1 leaves the desired motion as it is.",
     "adjoint": "The adjoint of the joint angles: what a change of each angle would cost.",
-    "deviation": "How far the modified joint angles are from the desired ones.",
-    "seat_g": "The G-vector at the seat, gravity included, along the seat's axes.",
 }
 """A sentence for each figure, in the order of a report."""
 
 # Ordinates are at least this high, whatever the noise: a thousandth of what
 # the machine does in earnest.
-_FLOOR = {"rpm": 0.01, "deg": 0.01, "rad/s²": 2e-3, "p": 0.02, "g": 2e-3}
+_FLOOR = {"rpm": 0.01, "deg": 0.01, "rad/s²": 2e-3, "p": 0.02}
 _LEAST_SHARE = 1e-3
 _NO_ADJOINT = 1e-12
 
-_COMPONENT_LABELS = {
-    "ab3": "AB3",
-    "bb3": "BB3",
-    "cb3": "CB3",
-    "seat_x": "seat x",
-    "seat_y": "seat y",
-    "seat_z": "seat z",
-}
+_COMPONENTS = {component.key: component for component in COMPONENTS}
+_IN_AXES = [
+    [component.key for component in COMPONENTS if component.axes == axes]
+    for axes in ("report", "seat")
+]
 
 
 def draw_plots(trajectory: Columns, metrics: Metrics) -> dict[str, bytes]:
@@ -81,18 +86,23 @@ def draw_plots(trajectory: Columns, metrics: Metrics) -> dict[str, bytes]:
     Returns
     -------
     dict of str to bytes
-        The PNG of each figure by its name, in the order of ``CAPTIONS``. The
-        same input gives the same bytes.
+        The PNG of each figure by its name, in the order of ``CAPTIONS``; without
+        ``factor`` and ``adjoint`` where the motion has none. The same input gives the same bytes.
     """
     figures: dict[str, Callable[[Columns, Metrics], tuple[Figure, str]]] = {
-        "commands": _commands,
+        "felt": felt,
         "coriolis": _coriolis,
         "coriolis_components": _coriolis_components,
+        "commands": _commands,
+        "limits": limits,
+        "deviation": _deviation,
         "factor": _factor,
         "adjoint": _adjoint,
-        "deviation": _deviation,
-        "seat_g": _seat_g,
     }
+    if not any(_is_factor(name) for name in trajectory):
+        del figures["factor"]
+    if "adjoint_arm" not in trajectory:
+        del figures["adjoint"]
     status = status_words(metrics)
     pictures = {}
     with style():
@@ -116,38 +126,38 @@ def _commands(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
         unit = split_unit(shown)[1]
         assert unit is not None
         curves = [
-            (DESIRED, columns[f"desired_{column}"] / unit.to_si),
+            (DESIRED, columns[f"asked_{column}"] / unit.to_si),
             (MODIFIED, columns[f"modified_{column}"] / unit.to_si),
         ]
         draw(panel, columns["t_s"], curves, label, _FLOOR[unit.suffix])
     if changed := change_words(metrics):
-        _note(axes[0][0], f"desired: {changed}, to keep the limits")
+        note(axes[0][0], f"moved by the limits alone: {changed}")
     return figure, title
 
 
 def _coriolis(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
     component = _shown_component(columns, metrics)
-    label = _COMPONENT_LABELS[component]
+    label = _COMPONENTS[component].label
     study = " (study Fig. 7, 10)" if component == "bb3" else ""
-    title = f"Coriolis {label}{study} and the whole vector"
+    title = f"Cross-coupling: {label}{study} and the whole vector"
     figure, axes = sheet(title, [BEFORE, AFTER], 2, height=2.0)
     t = columns["t_s"]
     draw(axes[0][0], t, _before_after(columns, component), f"{label} [rad/s²]", _FLOOR["rad/s²"])
     norms = [(pen, _norm(columns, pen.label)) for pen in (BEFORE, AFTER)]
     draw(axes[1][0], t, norms, "norm ‖c‖ [rad/s²]", _FLOOR["rad/s²"])
     for panel, key in ((axes[0][0], component), (axes[1][0], "vector")):
-        _note(panel, _share_taken_off(metrics, key))
+        note(panel, _share_taken_off(metrics, key))
     return figure, title
 
 
 def _coriolis_components(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
-    title = "Coriolis by component: study's axes and seat's axes"
+    title = "Cross-coupling by component: study's axes and seat's axes"
     figure, axes = sheet(title, [BEFORE, AFTER], 3, 2, same_scale=True)
-    for j, keys in enumerate((("ab3", "bb3", "cb3"), ("seat_x", "seat_y", "seat_z"))):
+    for j, keys in enumerate(_IN_AXES):
         for i, key in enumerate(keys):
-            label = f"{_COMPONENT_LABELS[key]} [rad/s²]"
+            label = f"{_COMPONENTS[key].label} [rad/s²]"
             draw(axes[i][j], columns["t_s"], _before_after(columns, key), label, _FLOOR["rad/s²"])
-            _note(axes[i][j], _share_taken_off(metrics, key))
+            note(axes[i][j], _share_taken_off(metrics, key))
     together = [values for name, values in columns.items() if name.startswith("coriolis_")]
     set_span(axes[0][0], together, _FLOOR["rad/s²"])
     return figure, title
@@ -184,42 +194,33 @@ def _deviation(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
     title = "Joint deviation θ − Θ"
     figure, axes = sheet(title, [], 3)
     for (panel,), joint in zip(axes, JOINTS, strict=True):
-        deviation = np.degrees(columns[f"modified_{joint}_rad"] - columns[f"desired_{joint}_rad"])
+        deviation = np.degrees(columns[f"modified_{joint}_rad"] - columns[f"asked_{joint}_rad"])
         draw(panel, columns["t_s"], [(MODIFIED, deviation)], f"{joint} [deg]", _FLOOR["deg"])
     if budget := budget_words(metrics):
-        _note(axes[0][0], f"budget: {budget}")
+        note(axes[0][0], f"budget: {budget}")
     return figure, title
 
 
-def _seat_g(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
-    title = "G-vector at the seat"
-    figure, axes = sheet(title, [DESIRED, MODIFIED], 3)
-    for (panel,), axis in zip(axes, "xyz", strict=True):
-        curves = [
-            (DESIRED, columns[f"seat_g{axis}_before_g"]),
-            (MODIFIED, columns[f"seat_g{axis}_after_g"]),
-        ]
-        draw(panel, columns["t_s"], curves, f"G{axis} [g]", _FLOOR["g"])
-    return figure, title
+def _is_factor(column: str) -> bool:
+    return column in ("p", *(f"p_{joint}" for joint in JOINTS))
 
 
-def _before_after(columns: Columns, component: str) -> list[tuple[Pen, Floats]]:
+def _before_after(columns: Columns, component: ComponentKey) -> list[tuple[Pen, Floats]]:
     stem = f"coriolis_{component}"
     return [(pen, columns[f"{stem}_{pen.label}_rad_s2"]) for pen in (BEFORE, AFTER)]
 
 
 def _norm(columns: Columns, when: str) -> Floats:
-    parts = [columns[f"coriolis_{name}_{when}_rad_s2"] for name in ("ab3", "bb3", "cb3")]
+    parts = [columns[f"coriolis_{name}_{when}_rad_s2"] for name in _IN_AXES[0]]
     return np.sqrt(np.sum(np.square(parts), axis=0))
 
 
-def _shown_component(columns: Columns, metrics: Metrics) -> str:
+def _shown_component(columns: Columns, metrics: Metrics) -> ComponentKey:
     """Return the component that the weight looks at, else the one that is largest before."""
     weighted = weighted_component(metrics)
     if weighted is not None:
         return weighted
-    keys = ("seat_x", "seat_y", "seat_z")
-    return max(keys, key=lambda key: float(np.ptp(columns[f"coriolis_{key}_before_rad_s2"])))
+    return max(_IN_AXES[1], key=lambda key: float(np.ptp(columns[f"coriolis_{key}_before_rad_s2"])))
 
 
 def _share_taken_off(metrics: Metrics, key: str) -> str:
@@ -229,9 +230,3 @@ def _share_taken_off(metrics: Metrics, key: str) -> str:
         return ""
     sign = "−" if reduction >= 0 else "+"
     return f"squared integral {sign}{100 * abs(reduction):.1f} %"
-
-
-def _note(panel: Any, words: str) -> None:
-    # no mathematics: a stranger's words may hold dollar signs
-    look: dict[str, Any] = {"fontsize": 8, "color": "#5A5A5A", "parse_math": False}
-    panel.set_title(words, loc="right", pad=3, **look)

@@ -1,4 +1,4 @@
-"""The trade-off curve: Coriolis reduction against deviation."""
+"""The trade-off curve: reduction of the cross-coupling against deviation."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from des_cli.model.tradeoff import TradePoint
-from des_cli.plots.canvas import BLUE, DASHES, GREY, INK, VERMILION, Pen, png, sheet, style
+from des_cli.plots.canvas import BLUE, DASHES, GREEN, GREY, INK, VERMILION, Pen, png, sheet, style
 
+FREE = Pen("free", GREEN, (0, (2.5, 1.2)), marker="D")
 PER_JOINT = Pen("per joint", BLUE, marker="o")
 SCALAR = Pen("scalar", VERMILION, (0, (6, 1.5)), marker="s")
 CONSTANT = Pen("constant p", GREY, DASHES, 1.3, 2.5, marker=".")
@@ -20,13 +21,18 @@ STUDY = Pen("study's single sweep", INK, "", 0.0, 4.0, marker="X")
 _OFF_PAGE = Pen("", INK)
 
 _HEIGHT = 4.6
-_SIZES = {"o": 5.5, "s": 5.0, ".": 5.0, "X": 9.0}
+_SIZES = {"D": 4.8, "o": 5.5, "s": 5.0, ".": 5.0, "X": 9.0}
 
 # Abscissae: column, what it is called, what it is multiplied with, its unit.
 _ABSCISSAE = {
     "joint_deviation_relative": ("deviation of the joint angles ‖θ − Θ‖ / ‖Θ‖", 100.0, "%"),
     "seat_rate_deviation_relative": ("deviation of the seat's angular rate", 100.0, "%"),
     "seat_g_rms_error_g": ("error of the G-vector at the seat, rms", 1.0, "g"),
+    "seat_angular_acceleration_rms_error_rad_s2": (
+        "error of the total angular acceleration at the seat, rms",
+        1.0,
+        "rad/s²",
+    ),
     "attitude_error_max_deg": ("largest error of the seat's attitude", 1.0, "deg"),
 }
 _MARGIN = 1.08
@@ -53,7 +59,7 @@ def draw_tradeoff(points: Sequence[TradePoint], about: str) -> bytes:
         The PNG. The abscissa is the metric that the budgets were set on where a
         point knows it, otherwise the joint deviation.
     """
-    title = "Coriolis reduction against deviation"
+    title = "Reduction of the cross-coupling against deviation"
     with style():
         figure = _figure(points, title)
         shown = about if len(about) <= _LONGEST else f"{about[: _LONGEST - 1]}…"
@@ -69,6 +75,7 @@ def _figure(points: Sequence[TradePoint], title: str) -> Figure:
     curves = [
         (pen, _along(known, abscissa, algorithm, control))
         for pen, algorithm, control in (
+            (FREE, "optimum", "free"),
             (PER_JOINT, "optimum", "per-joint"),
             (SCALAR, "optimum", "scalar"),
             (STUDY, "report-sweep", "scalar"),
@@ -102,7 +109,7 @@ def _places(curve: Sequence[TradePoint], abscissa: str) -> tuple[np.ndarray, np.
 def _scale(axes: Axes, drawn: Sequence[tuple[Pen, list[TradePoint]]], abscissa: str) -> None:
     """Set the axes: as wide as what was asked for, not as the baselines reach."""
     places = {pen: _places(curve, abscissa) for pen, curve in drawn}
-    asked = [places[pen][0].max() for pen in (PER_JOINT, SCALAR) if pen in places]
+    asked = [places[pen][0].max() for pen in (FREE, PER_JOINT, SCALAR) if pen in places]
     every = [x.max() for x, _ in places.values()]
     right = float(max(asked or every, default=1.0))
     if asked and STUDY in places:
@@ -116,7 +123,7 @@ def _scale(axes: Axes, drawn: Sequence[tuple[Pen, list[TradePoint]]], abscissa: 
     axes.set_ylim(min(0.0, float(floor)), _TOP)
     words, _, unit = _ABSCISSAE[abscissa]
     axes.set_xlabel(f"{words} [{unit}]")
-    axes.set_ylabel("reduction of the weighted Coriolis [%]")
+    axes.set_ylabel("reduction of the weighted cross-coupling [%]")
     axes.xaxis.set_major_locator(MaxNLocator(nbins=8, steps=[1, 2, 5, 10]))
     plain = FuncFormatter(lambda value, _: f"{value:g}".replace("-", "−"))
     axes.xaxis.set_major_formatter(plain)
@@ -174,6 +181,7 @@ def _crowded(pixel: np.ndarray, marks: Sequence[np.ndarray]) -> bool:
 def _label(axes: Axes, pen: Pen, words: str, x: float, y: float) -> None:
     # Off the curves, which rise to the right and bend down.
     place = {
+        FREE: (-4, 4, "right", "bottom"),
         PER_JOINT: (-4, 4, "right", "bottom"),
         STUDY: (0, -7, "center", "top"),
         _OFF_PAGE: (-2, 0, "right", "center"),
@@ -201,6 +209,8 @@ def _name(point: TradePoint) -> str:
         return f"r₂ = {point.value:g}"
     if point.swept.endswith("_deg"):
         return f"{point.value:g}°"
+    if point.swept.endswith("_rad_s2"):
+        return f"{point.value:g} rad/s²"
     if point.swept.endswith("_g"):
         return f"{point.value:g} g"
     return f"{100.0 * point.value:g} %"

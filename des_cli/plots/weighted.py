@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from des_cli.model.coriolis import COMPONENTS
+from des_cli.model.coriolis import COMPONENTS, ComponentKey
 from des_cli.results.reading import lookup, number
 
 
-def weighted_component(metrics: Mapping[str, Any]) -> str | None:
+def weighted_component(metrics: Mapping[str, Any]) -> ComponentKey | None:
     """Return the one component that R1 weighs, None if it weighs several.
 
     Metrics that do not name R1 are taken for the study's, which weighs BB3,

@@ -6,13 +6,13 @@ already takes most of the Coriolis away.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from des_cli.kinematics.chain import Chain
 from des_cli.kinematics.coriolis import coriolis
 from des_cli.model.motion import Motion, integrate_sides
-from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.report_sweep import RUNAWAY
 from des_cli.study.backward_forward import adjoint_along, factors_of, follow
@@ -39,21 +39,25 @@ class Baselines:
     constant_deviation: float
 
 
-def compare(problem: Problem, solution: Solution) -> Baselines:
-    """Set a solution beside the study's sweep and the constant factor that equals it.
+def compare(problem: Problem, modified: Motion, chain: Chain | None = None) -> Baselines:
+    """Set a modified motion beside the study's sweep and the constant factor that equals it.
 
     Parameters
     ----------
     problem : Problem
-    solution : Solution
+        The study's, along the executable motion; reductions are relative to its reference.
+    modified : Motion
+    chain : Chain, optional
+        With the seat as the modified motion has it, where it was turned.
 
     Returns
     -------
     Baselines
     """
     desired = problem.desired
-    before = weighted_energy(problem, desired)
-    after = weighted_energy(problem, solution.modified)
+    before = weighted_energy(problem, problem.reference)
+    turned = problem if chain is None else replace(problem, chain=chain)
+    after = weighted_energy(turned, modified)
     nothing = before <= 1e-24
     swept = _sweep_once(problem)
     swept_energy = np.inf if swept is None else weighted_energy(problem, swept)

@@ -14,6 +14,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.motion import Motion
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.transcription import Transcription
+from des_cli.solver.program import Indices
 
 SAMPLES = 400
 """Samples of the coarsest grid, at least: the Cobra's factors there are within 1e-3 of
@@ -41,21 +42,30 @@ def coarsen(problem: Problem, every: int) -> Problem:
 
     The last sample stays, and so do those at which a rate steps unless they are many.
     """
-    desired = problem.desired
-    n = len(desired.t)
+    n = len(problem.desired.t)
     keep = np.zeros(n, dtype=bool)
     keep[::every] = keep[-1] = True
-    stepping = 1 + np.flatnonzero(np.any(desired.rate_step != 0.0, axis=1))
+    steps = np.any(problem.desired.rate_step != 0.0, axis=1)
+    steps |= np.any(problem.reference.rate_step != 0.0, axis=1)
+    stepping = 1 + np.flatnonzero(steps)
     if len(stepping) < n // (2 * every):
         keep[stepping] = True
     kept = np.flatnonzero(keep)
-    coarse = Motion(
-        t=desired.t[kept],
-        angle=desired.angle[kept],
-        rate_start=desired.rate_start[kept[:-1]],
-        rate_end=desired.rate_end[kept[1:] - 1],
+    return replace(
+        problem,
+        desired=_at(problem.desired, kept),
+        asked=None if problem.asked is None else _at(problem.asked, kept),
     )
-    return replace(problem, desired=coarse)
+
+
+def _at(motion: Motion, kept: Indices) -> Motion:
+    """Return a motion at some of its samples; rates that step keep their sides."""
+    return Motion(
+        t=motion.t[kept],
+        angle=motion.angle[kept],
+        rate_start=motion.rate_start[kept[:-1]],
+        rate_end=motion.rate_end[kept[1:] - 1],
+    )
 
 
 def refine(x: Floats, coarse: Problem, grid: Transcription) -> Floats:

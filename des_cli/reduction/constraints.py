@@ -46,9 +46,9 @@ class AngleRows(Rows):
         """Return the angles over their limits."""
         return np.asarray((self._jacobian @ x[:, :, None])[:, :, 0])
 
-    def jacobian(self, x: Floats) -> tuple[Floats, None]:
+    def jacobian(self, x: Floats) -> tuple[Floats, ...]:
         """Return the constant coefficients."""
-        return self._jacobian, None
+        return (self._jacobian,)
 
 
 class RateRows(Rows):
@@ -72,9 +72,9 @@ class RateRows(Rows):
         """Return the rates over their limits."""
         return self.rates.value(x) * self.per_rate
 
-    def jacobian(self, x: Floats) -> tuple[Floats, None]:
+    def jacobian(self, x: Floats) -> tuple[Floats, ...]:
         """Return the derivative in x_k."""
-        return self.rates.expand(x)[1] * self.per_rate[:, None], None
+        return (self.rates.expand(x)[1] * self.per_rate[:, None],)
 
     def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
         """Return the rates' curvature along the multipliers."""
@@ -103,7 +103,7 @@ class AccelerationRows(Rows):
         """Return the accelerations over their limits."""
         return np.diff(self.rates.value(x), axis=0) * self.per_change
 
-    def jacobian(self, x: Floats) -> tuple[Floats, Floats]:
+    def jacobian(self, x: Floats) -> tuple[Floats, ...]:
         """Return the derivatives in x_k and x_{k+1}."""
         slope = self.rates.expand(x)[1]
         each = self.per_change[:, :, None]
@@ -118,8 +118,50 @@ class AccelerationRows(Rows):
         return self.rates.bend(x, pull)
 
 
+class JerkRows(Rows):
+    """Changes of the acceleration from one interval to the next, of joints that have a limit.
+
+    Parameters
+    ----------
+    machine : Machine
+    rates : Rates
+        With one point at each sample.
+    step : (n - 1,) array
+        [s]
+    """
+
+    def __init__(self, machine: Machine, rates: Rates, step: Floats) -> None:
+        super().__init__(np.arange(len(step) - 1))
+        limit = np.array([limit.jerk for limit in machine.limits]) * (1.0 - MARGIN)
+        self.rates, self.joints = rates, np.flatnonzero(np.isfinite(limit))
+        apart = 0.5 * (step[1:] + step[:-1])[:, None] * limit[self.joints]
+        first, last = 1.0 / (step[:-1, None] * apart), 1.0 / (step[1:, None] * apart)
+        self.share = (first, -first - last, last)
+        """Coefficients of the rates at samples k, k + 1 and k + 2, (n - 2, joints)."""
+
+    def value(self, x: Floats) -> Floats:
+        """Return the jerks over their limits."""
+        rate = self.rates.value(x)[:, self.joints]
+        n = len(self.node)
+        return np.asarray(sum(c * rate[i : i + n] for i, c in enumerate(self.share)))
+
+    def jacobian(self, x: Floats) -> tuple[Floats, ...]:
+        """Return the derivatives in x_k, x_{k+1} and x_{k+2}."""
+        slope = self.rates.expand(x)[1][:, self.joints]
+        n = len(self.node)
+        return tuple(c[:, :, None] * slope[i : i + n] for i, c in enumerate(self.share))
+
+    def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
+        """Return the curvature of the three rates along the multipliers."""
+        weight = np.zeros((len(x), 3))
+        n = len(self.node)
+        for i, c in enumerate(self.share):
+            weight[i : i + n, self.joints] += c * multiplier
+        return self.rates.bend(x, weight)
+
+
 def limit_rows(machine: Machine, rates: Rates, step: Floats, unknowns: int) -> tuple[Rows, ...]:
-    """Return the machine's limits on rates, accelerations and angles.
+    """Return the machine's limits on rates, accelerations, angles and jerks.
 
     Parameters
     ----------
@@ -131,8 +173,10 @@ def limit_rows(machine: Machine, rates: Rates, step: Floats, unknowns: int) -> t
     unknowns : int
         3 + m.
     """
-    return (
+    rows = (
         RateRows(machine, rates, step),
         AccelerationRows(machine, rates, step),
         AngleRows(machine, step, unknowns),
     )
+    smooth = any(np.isfinite(limit.jerk) for limit in machine.limits) and len(step) > 1
+    return (*rows, JerkRows(machine, rates, step)) if smooth else rows

@@ -199,9 +199,7 @@ def _through_ends(grid: SplineGrid, desired: Motion, ends: Ends) -> Floats:
     )
 
 
-def _least_squares(
-    grid: SplineGrid, desired: Motion, base: Floats
-) -> tuple[SymmetricBand, Floats]:
+def _least_squares(grid: SplineGrid, desired: Motion, base: Floats) -> tuple[SymmetricBand, Floats]:
     """Return the quadratic cost of a deviation from the base: Hessian and linear part."""
     k, h = grid.intervals, grid.step
     nodes, weight = np.polynomial.legendre.leggauss(4)

@@ -81,6 +81,14 @@ class Deviation:
                 return self._share(self._turning_error, self.before.seat_angular_acceleration)
             case "seat_angular_acceleration_rms_error_rad_s2":
                 return self._rms(self._turning_error)
+            case "seat_angular_acceleration_rms_ratio":
+                before, after = (self._rms(turning) for turning in self._turning)
+                return after / max(before, 1e-150)
+            case "seat_angular_acceleration_peak_ratio":
+                before, after = (
+                    float(np.max(np.linalg.norm(turning, axis=-1))) for turning in self._turning
+                )
+                return after / max(before, 1e-150)
             case "attitude_error_max_deg":
                 one, other = (
                     seat_rotation(chain, motion.angle)
@@ -89,6 +97,10 @@ class Deviation:
                     )
                 )
                 return float(np.degrees(np.max(geodesic_angle(one, other))))
+
+    @property
+    def _turning(self) -> tuple[Floats, Floats]:
+        return self.before.seat_angular_acceleration, self.after.seat_angular_acceleration
 
     @property
     def _turning_error(self) -> Floats:

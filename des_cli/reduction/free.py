@@ -22,7 +22,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
 from des_cli.model.metric import METRICS, Budget, MetricKey
 from des_cli.model.motion import Motion, integrate_sides
-from des_cli.model.profile import Reduction
+from des_cli.model.profile import Axes, Reduction
 from des_cli.model.solution import Iteration, Solution, Status
 from des_cli.reduction.executable import (
     ExecutableSpline,
@@ -31,9 +31,17 @@ from des_cli.reduction.executable import (
     sample_spline,
 )
 from des_cli.reduction.fidelity import Deviation
-from des_cli.reduction.free_problem import FreeTask, cross_coupling, pose_motion, turned_seat
+from des_cli.reduction.free_problem import (
+    AT_POINTS,
+    FreeTask,
+    cross_coupling,
+    in_ground_axes,
+    pose_motion,
+    turned_seat,
+)
 from des_cli.reduction.inside import find_inside
 from des_cli.reduction.limit_rows import Tie
+from des_cli.reduction.limits import find_violations
 from des_cli.reduction.motion_program import MotionProgram
 from des_cli.reduction.ties import tie_reversals
 from des_cli.solver.barrier import Options, Outcome, Step, minimise
@@ -44,6 +52,8 @@ WELL_POSED: frozenset[MetricKey] = frozenset(
         "seat_rate_deviation_relative",
         "seat_angular_acceleration_deviation_relative",
         "seat_angular_acceleration_rms_error_rad_s2",
+        "seat_angular_acceleration_rms_ratio",
+        "seat_angular_acceleration_peak_ratio",
     }
 )
 """Metrics that see fast motions, so that a budget on one of them leaves one optimum."""
@@ -61,21 +71,21 @@ FEW = 250
 DOWN = (16.0, 8.0, 4.0, 2.0, 1.0)
 """Multiples of the budgets that the second start of an ill-posed problem comes down by."""
 
-GAP, TOLERANCE = 1e-8, 1e-6
+GAP, TOLERANCE = 1e-7, 1e-6
 """Where a minimisation ends: complementarity, relative to the desired cross-coupling, and
 first-order conditions, relative to the gradients at its start."""
 
 ROUGH_GAP = 1e-3
 """Where it ends on a coarser grid: far enough inside to be inside on a finer one too."""
 
-WARM_GAP = 1e-2
-"""Complementarity that a start near the optimum begins with."""
+START_GAP, WARM_GAP = 3.0, 1e-2
+"""Complementarity that a search begins with, from far away and near the optimum."""
 
 ACCEPTABLE = 1e-4
 """Complementarity at which a search that did not converge is good enough to be used: its
 cost is within this of a minimum's."""
 
-ROOM = 2e-4
+ROOM = 1e-4
 """Share of each budget that is left to the table, which is a little other than the spline."""
 
 SETTLINGS = 6
@@ -83,6 +93,9 @@ SETTLINGS = 6
 
 TOUCHING = 1.0 - 1e-9
 """Share of a budget that a table may spend."""
+
+LEFT = 0.999
+"""Share of the budget that binds which a table should spend, at least."""
 
 
 @dataclass(frozen=True)
@@ -149,13 +162,14 @@ class _Search:
         self.t = task.reference.t
         budget = task.reduction.budget
         felt = any(b.metric in WELL_POSED for b in budget)
+        self.warm = False
         self.well_posed = felt or task.reduction.objective != "coriolis"
 
     def run(self) -> FreeResult:
         grids = self._grids()
         fits = [self._fit(grid) for grid in grids]
         finest = fits[-1]
-        desired = sample_spline(finest, self.t)
+        desired = self._desired(finest)
         if finest.trouble:
             return self._refused(desired, finest.trouble)
         energy = cross_coupling(self.task, finest.grid)
@@ -163,7 +177,7 @@ class _Search:
             return self._passed_through(desired)
         budgets = tuple(replace(b, most=b.most * (1.0 - ROOM)) for b in self.task.reduction.budget)
         outcome: Outcome | None = None
-        x = np.zeros(0)
+        x = start = np.zeros(0)
         for level, fit in enumerate(fits):
             last = level == len(fits) - 1
             program = self._program(fit, budgets)
@@ -181,10 +195,18 @@ class _Search:
                 if inside is None:
                     return self._refused(desired, self._unreachable(program))
                 x = inside
+            start, self.warm = x, warm
             outcome = self._minimise(program, x, rough=not last, warm=warm)
             x = outcome.x
         assert outcome is not None
-        return self._settled(finest, desired, budgets, outcome)
+        return self._settled(finest, desired, budgets, outcome, start)
+
+    def _desired(self, fit: ExecutableSpline) -> Motion:
+        """Return what the profile asks for, or its executable replacement if it needs one."""
+        enforced = self.task.reduction.limits == "enforce"
+        if not enforced or not find_violations(self.task.machine, self.task.reference, "desired"):
+            return self.task.reference
+        return sample_spline(fit, self.t)
 
     def _grids(self) -> list[SplineGrid]:
         """Return the grids to solve on, the last one that of the result."""
@@ -249,13 +271,11 @@ class _Search:
             outcome = self._minimise(program, inside, rough=True, warm=outcome is not None)
         return outcome
 
-    def _minimise(
-        self, program: MotionProgram, x: Floats, *, rough: bool, warm: bool
-    ) -> Outcome:
+    def _minimise(self, program: MotionProgram, x: Floats, *, rough: bool, warm: bool) -> Outcome:
         options = Options(
             gap=ROUGH_GAP if rough else GAP,
             tolerance=TOLERANCE,
-            start_gap=WARM_GAP if warm else 1.0,
+            start_gap=WARM_GAP if warm else START_GAP,
             max_iterations=min(EACH, self.log.left) if rough else self.log.left,
         )
         return minimise(program, x, options, self.log)
@@ -266,10 +286,11 @@ class _Search:
         desired: Motion,
         budgets: Sequence[Budget],
         outcome: Outcome,
+        start: Floats,
     ) -> FreeResult:
-        """Tighten the budgets until the table keeps what was asked of the spline."""
-        asked = {b.metric: b.most for b in self.task.reduction.budget}
-        for _ in range(SETTLINGS):
+        """Adapt the budgets of the spline until its table spends what is allowed."""
+        allowed = {b.metric: b.most for b in self.task.reduction.budget}
+        for attempt in range(SETTLINGS):
             program = self._program(fit, budgets)
             modified, seat = self._table(program, fit, outcome.x)
             deviation = Deviation.between(
@@ -278,17 +299,22 @@ class _Search:
                 (self.task.chain, chain_of(self.task.machine, seat)),
                 self.task.machine.gravity,
             )
-            spent = {m: deviation.value(m) / most for m, most in asked.items()}
-            if max(spent.values(), default=0.0) <= TOUCHING:
+            spent = {m: deviation.value(m) / most for m, most in allowed.items()}
+            worst = max(spent.values(), default=TOUCHING)
+            if worst <= TOUCHING and (worst >= LEFT or attempt == SETTLINGS - 1):
                 break
-            budgets = [
-                replace(b, most=b.most * min(1.0, TOUCHING / spent[b.metric])) for b in budgets
-            ]
+            factor = {m: (1.0 - 0.5 * ROOM) / share for m, share in spent.items()}
+            if worst <= TOUCHING:  # a budget that is not the binding one stays
+                factor = {m: f if spent[m] == worst else 1.0 for m, f in factor.items()}
+            else:
+                factor = {m: min(1.0, f) for m, f in factor.items()}
+            budgets = [replace(b, most=b.most * factor[b.metric]) for b in budgets]
             program = self._program(fit, budgets)
-            inside = find_inside(program, _drawn_in(program, outcome.x), self.log)
+            # from where the search began: at its end hundreds of limits have no room
+            inside = find_inside(program, start, self.log)
             if inside is None:
                 break
-            outcome = self._minimise(program, inside, rough=False, warm=True)
+            outcome = self._minimise(program, inside, rough=False, warm=self.warm)
         return FreeResult(desired, self._solution(outcome, modified, desired, seat), seat)
 
     def _table(
@@ -342,7 +368,8 @@ class _Search:
     def _cost(self, motion: Motion, seat: Seat) -> float:
         """Return J = 1/2 int c' R1 c dt of a motion as its table plays it."""
         chain = chain_of(self.task.machine, seat)
-        c = coriolis(chain, motion.angle_sides, motion.rate_sides, "seat")
+        axes: Axes = "report" if in_ground_axes(self.task.reduction) else "seat"
+        c = coriolis(chain, motion.angle_sides, motion.rate_sides, axes)
         running = np.sum((c @ self.task.reduction.r1) * c, axis=-1)
         return 0.5 * float(integrate_sides(motion.step, running))
 
@@ -379,7 +406,7 @@ class _Search:
     def _unreachable(self, program: MotionProgram) -> str:
         """Say which budgets the limits alone exceed."""
         values = program.values(np.zeros(program.size))
-        budgets = [b for b in self.task.reduction.budget if b.metric != "attitude_error_max_deg"]
+        budgets = [b for b in self.task.reduction.budget if b.metric not in AT_POINTS]
         over = [
             f"{METRICS[b.metric].label} {np.sqrt(value) * b.most:.3g} instead of {b.most:.3g}"
             for b, value in zip(budgets, values.budgets, strict=True)
@@ -402,9 +429,6 @@ MOVING = 1e-6
 MOST_SHARE = 1e3
 """Largest budget that the way down from above starts with."""
 
-DRAWN_IN = (1.0 - 1e-4, 1.0 - 1e-3, 1.0 - 1e-2, 0.95, 0.9, 0.5)
-"""Shares of a deviation that are tried until a point is inside again."""
-
 
 def _looser(budget: Budget, multiple: float) -> float:
     return min(budget.most * multiple, max(budget.most, MOST_SHARE))
@@ -417,12 +441,3 @@ def _refined(coarse: ExecutableSpline, fine: ExecutableSpline, x: Floats) -> Flo
     while grid.intervals < fine.grid.intervals:
         grid, control = grid.refined(control)
     return np.concatenate([(control - fine.control).reshape(-1), x[size:]])
-
-
-def _drawn_in(program: MotionProgram, x: Floats) -> Floats:
-    """Return the largest tried share of a deviation that is inside, or a small one."""
-    for share in DRAWN_IN:
-        values = program.values(share * x)
-        if np.all(values.budgets < 1.0) and np.all(values.local < 1.0):
-            return share * x
-    return DRAWN_IN[-1] * x

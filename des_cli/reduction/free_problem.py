@@ -8,15 +8,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from des_cli.kinematics.chain import Chain, chain_of
+from des_cli.kinematics.coriolis import coriolis
+from des_cli.kinematics.response import respond_on
 from des_cli.kinematics.seat_turn import SeatTurn, seat_turns
 from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import SeatForms, SeatMotion, seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine, OccupantBounds, Seat
-from des_cli.model.metric import Budget
+from des_cli.model.metric import Budget, MetricKey
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
+from des_cli.reduction.ground_cross import GroundCross
 from des_cli.reduction.limit_rows import LimitRows, Tie
 from des_cli.reduction.local_bounds import (
     AttitudeBound,
@@ -53,6 +56,11 @@ UNIT_ACCELERATION = 1.0
 
 PILOT_SIGNS = np.array([1.0, 1.0, -1.0])
 """From the specific force along x, y, z of the seat to Gx, Gy, Gz."""
+
+AT_POINTS: frozenset[MetricKey] = frozenset(
+    {"attitude_error_max_deg", "seat_angular_acceleration_peak_ratio"}
+)
+"""Metrics that are a largest value over time: bounds at each point, and no integrals."""
 
 SEAT_ANGLES = ("seat_yaw", "seat_pitch")
 
@@ -141,58 +149,72 @@ def pose_motion(
     windows = Windows(grid, SEAT_VARIABLES)
     angle, rate, acceleration = sample_motion(task.reference, windows.times())
     seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
-    measures = _Measures(grid, base, angle, seat)
+    measures = _Measures(grid, base, angle, seat, cross_coupling(task, grid))
     acceleration_limit = np.array([limit.acceleration for limit in task.machine.limits])
     unit = np.where(np.isfinite(acceleration_limit), acceleration_limit, UNIT_ACCELERATION)
-    attitude = [b for b in reduction.budget if b.metric == "attitude_error_max_deg"]
     return MotionProblem(
         grid=grid,
         base=base,
         forms=forms,
         cost=measures.cost(reduction),
-        budgets=[measures.budget(b) for b in reduction.budget if b not in attitude],
+        budgets=[measures.budget(b) for b in reduction.budget if b.metric not in AT_POINTS],
         rows=LimitRows(grid, base, task.limits, task.ends, MARGIN, ties),
         ends=task.ends,
         smoothing=REGULARISATION / (grid.duration * unit**2),
         local=[
-            *(_attitude_bound(task.chain, angle, budget.most) for budget in attitude),
+            *(_point_bound(task, angle, b) for b in reduction.budget if b.metric in AT_POINTS),
             *_occupant_bounds(task.occupant, grid),
         ],
         seat=_free_seat(task),
+        ground=measures.ground(task),
     )
 
 
 def cross_coupling(task: FreeTask, grid: SplineGrid) -> float:
     """Return the reference's ``int c' R1 c dt``, which the cost is relative to."""
-    forms = seat_forms(task.chain, task.machine.gravity)
     times = Windows(grid, SEAT_VARIABLES).times()
-    angle, rate, acceleration = sample_motion(task.reference, times)
-    seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
-    root = _root(task.reduction.r1)
-    return float(0.5 * grid.step * np.sum((root @ seat.products[:3]) ** 2))
+    angle, rate, _ = sample_motion(task.reference, times)
+    c = coriolis(task.chain, angle, rate, "report" if in_ground_axes(task.reduction) else "seat")
+    return float(0.5 * grid.step * np.sum((c @ _root(task.reduction.r1)) ** 2))
+
+
+def in_ground_axes(reduction: Reduction) -> bool:
+    """Return whether the weight needs the study's axes: a weight on the length needs none."""
+    isotropic = np.array_equal(reduction.r1, reduction.r1[0, 0] * np.eye(3))
+    return reduction.axes == "report" and not isotropic
 
 
 class _Measures:
     """Costs and budgets on a grid, relative to the reference's own size."""
 
-    def __init__(self, grid: SplineGrid, base: Floats, angle: Floats, seat: SeatMotion) -> None:
+    def __init__(
+        self, grid: SplineGrid, base: Floats, angle: Floats, seat: SeatMotion, size: float
+    ) -> None:
         self.grid, self.base, self.angle, self.seat = grid, base, angle, seat
+        self.size = max(size, 1e-300)
         self.weight = 0.5 * grid.step
 
     def cost(self, reduction: Reduction) -> list[Term]:
         """Return the terms of the objective; the reference's cross-coupling counts one."""
-        root = _root(reduction.r1)
-        cross = value_of(self.seat, "cross")
-        size = max(self.weight * float(np.sum((root @ cross) ** 2)), 1e-300)
         terms = []
-        if reduction.objective != "felt":
-            terms.append(Term("cross", root * np.sqrt(self.weight / size)))
+        if reduction.objective != "felt" and not in_ground_axes(reduction):
+            terms.append(Term("cross", self._cross_root(reduction)))
         if reduction.objective != "coriolis":
+            cross = value_of(self.seat, "cross")
             share = BLEND if reduction.objective == "blend" else 1.0
-            isotropic = np.sqrt(share * np.trace(reduction.r1) / 3.0 * self.weight / size)
+            isotropic = np.sqrt(share * np.trace(reduction.r1) / 3.0 * self.weight / self.size)
             target = value_of(self.seat, "acceleration") - cross
             terms.append(Term("acceleration", isotropic * np.eye(3), target))
         return terms
+
+    def ground(self, task: FreeTask) -> GroundCross | None:
+        """Return the cost of the cross-coupling in the study's axes, if that is weighed."""
+        if task.reduction.objective == "felt" or not in_ground_axes(task.reduction):
+            return None
+        return GroundCross(task.chain, self._cross_root(task.reduction))
+
+    def _cross_root(self, reduction: Reduction) -> Floats:
+        return np.asarray(_root(reduction.r1) * np.sqrt(self.weight / self.size))
 
     def budget(self, budget: Budget) -> Term | JointBudget:
         """Return a budget as the square of its metric over the square of its most."""
@@ -213,6 +235,8 @@ class _Measures:
                 return self._term("acceleration", self._per_size("acceleration") / most)
             case "seat_angular_acceleration_rms_error_rad_s2":
                 return self._term("acceleration", np.sqrt(mean) / most)
+            case "seat_angular_acceleration_rms_ratio":
+                return Term("acceleration", self._per_size("acceleration") / most * np.eye(3))
         raise ValueError(f"a free motion has no budget on {budget.metric}")
 
     def _per_size(self, quantity: str) -> float:
@@ -237,6 +261,15 @@ def _root(weight: Floats) -> Floats:
         return np.diag(np.sqrt(np.diag(weight)))
     values, vectors = np.linalg.eigh(weight)
     return np.asarray((vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
+
+
+def _point_bound(task: FreeTask, angle: Floats, budget: Budget) -> LocalBound:
+    """Return a budget that bounds every point."""
+    if budget.metric == "attitude_error_max_deg":
+        return _attitude_bound(task.chain, angle, budget.most)
+    response = respond_on(task.chain, task.machine.gravity, task.reference)
+    peak = np.max(np.linalg.norm(response.seat_angular_acceleration, axis=-1))
+    return NormBound("acceleration", budget.most * max(float(peak), 1e-150))
 
 
 def _attitude_bound(chain: Chain, angle: Floats, most_deg: float) -> AttitudeBound:

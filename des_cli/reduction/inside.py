@@ -13,6 +13,7 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.reduction.motion_program import JointBudget, MotionProgram
+from des_cli.reduction.motion_system import MotionExpansion
 from des_cli.reduction.terms import Term
 from des_cli.solver.barrier import Options, Step, Values, minimise
 
@@ -58,7 +59,7 @@ def find_inside(
         if worst < -ROOM:
             return x
         shift = max(worst + BEYOND, 0.0)
-        relaxed = _Relaxed(nearest, program, shift)
+        relaxed = _Relaxed(nearest, shift)
         options = Options(gap=1e-2, start_gap=0.1, max_iterations=EACH, stop_early=relaxed.inside)
         outcome = minimise(relaxed, x, options, on_step)
         x, values = outcome.x, program.values(outcome.x)
@@ -85,8 +86,8 @@ def _nearest(program: MotionProgram) -> MotionProgram:
 class _Relaxed:
     """A program whose budgets and bounds count from a shift on."""
 
-    def __init__(self, program: MotionProgram, original: MotionProgram, shift: float) -> None:
-        self._program, self._original, self._shift = program, original, shift
+    def __init__(self, program: MotionProgram, shift: float) -> None:
+        self._program, self._shift = program, shift
         self.bounds = program.bounds
         self.linear, self.linear_change = program.linear, program.linear_change
         self.linear_adjoint, self.reduce = program.linear_adjoint, program.reduce
@@ -100,7 +101,7 @@ class _Relaxed:
 
     def expand(
         self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
-    ) -> object:
+    ) -> MotionExpansion:
         """Expand, shifted."""
         expansion = self._program.expand(x, budget, local, stiffness, share)
         expansion.budgets = expansion.budgets - self._shift

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Floats, Indices
 from des_cli.model.machine import JointLimits
 from des_cli.reduction.windows import JOINTS
 from des_cli.solver.band import SymmetricBand
@@ -53,7 +53,7 @@ class _Group:
     """
 
     order: int
-    joints: Floats
+    joints: Indices
     bound: Floats
     first: int
     last: int
@@ -181,9 +181,9 @@ class _Tips:
                         self._rows.append((at, j, weight))
                         bounds.append(bound * (1.0 - margin))
         for tie in ties:
-            at = (tie.time - grid.start) / grid.step
-            interval = min(max(int(at), 0), grid.intervals - 1)
-            weight = grid.basis(np.array([at - interval]), 1)[0]
+            place = (tie.time - grid.start) / grid.step
+            interval = min(max(int(place), 0), grid.intervals - 1)
+            weight = grid.basis(np.array([place - interval]), 1)[0]
             self._rows.append((interval, tie.joint, weight))
             bounds.append(tie.bound)
         self.bounds = np.array(bounds)
@@ -200,5 +200,3 @@ class _Tips:
             for b in range(len(weight)):
                 for a in range(b, len(weight)):
                     band.data[at + b, j, JOINTS * (a - b)] += value * weight[a] * weight[b]
-
-

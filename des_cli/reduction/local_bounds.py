@@ -18,9 +18,11 @@ from des_cli.reduction.terms import Quantity, curvature_of, slope_of, value_of
 
 
 class LocalBound(Protocol):
-    """A bound with ``rows`` rows at each point."""
+    """A bound with some rows at each point."""
 
-    rows: int
+    @property
+    def rows(self) -> int:
+        """Rows at each point."""
 
     def value(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
         """Return the values, (rows, m), of points with joint angles (3, m)."""
@@ -28,9 +30,7 @@ class LocalBound(Protocol):
     def slope(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
         """Return the derivatives by the variables, (v, rows, m)."""
 
-    def curvature(
-        self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats
-    ) -> Floats:
+    def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers (rows, m), (v (v + 1) / 2, m)."""
 
 
@@ -66,9 +66,7 @@ class ComponentBound:
         """Return the derivatives by the variables, (8, rows, m)."""
         return np.asarray((self.direction / self.scale[:, None]) @ seat.force_slope)
 
-    def curvature(
-        self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats
-    ) -> Floats:
+    def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers, (36, m)."""
         push = (self.direction / self.scale[:, None]).T @ multiplier
         return curvature_of(seat, {"force": push})
@@ -91,7 +89,7 @@ class NormBound:
 
     def value(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
         """Return the values, (1, m)."""
-        return np.sum(value_of(seat, self.quantity) ** 2, axis=0)[None] / self.bound**2
+        return np.asarray(np.sum(value_of(seat, self.quantity) ** 2, axis=0)[None] / self.bound**2)
 
     def slope(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
         """Return the derivatives by the variables, (8, 1, m)."""
@@ -100,9 +98,7 @@ class NormBound:
         slope[: len(by), 0] = np.einsum("kcm,cm->km", by, value_of(seat, self.quantity))
         return slope * (2.0 / self.bound**2)
 
-    def curvature(
-        self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats
-    ) -> Floats:
+    def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers, (36, m)."""
         weight = 2.0 * multiplier / self.bound**2
         bent = curvature_of(seat, {self.quantity: weight * value_of(seat, self.quantity)})
@@ -146,7 +142,7 @@ class AttitudeBound:
     def value(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
         """Return the values, (1, m)."""
         off = self.rotation(angles.T).T - self.reference[:, at]
-        return np.sum(off**2, axis=0)[None] * self._per_chord
+        return np.asarray(np.sum(off**2, axis=0)[None] * self._per_chord)
 
     def slope(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
         """Return the derivatives by the joint angles, (3, 1, m)."""
@@ -154,9 +150,7 @@ class AttitudeBound:
         along = np.einsum("mac,cm->am", turned, self.reference[:, at])
         return np.asarray(-2.0 * self._per_chord * along[:, None])
 
-    def curvature(
-        self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats
-    ) -> Floats:
+    def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers, (6, m)."""
         bent = self.rotation.gradient().gradient()(angles.T)  # (m, 3, 3, 9)
         along = np.einsum("mabc,cm->abm", bent, self.reference[:, at])
@@ -192,9 +186,7 @@ class OnsetBound:
         slope[..., : slope.shape[-1] // 2] *= -1.0
         return np.asarray(slope)
 
-    def curvature(
-        self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats
-    ) -> Floats:
+    def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers (rows, count), (36, 2 count)."""
         push = self.direction.T @ multiplier
         return curvature_of(seat, {"force": np.concatenate([-push, push], axis=1)})

@@ -17,6 +17,7 @@ import numpy as np
 from des_cli.kinematics.seat_turn import SeatTurn, mixed_force, mixed_force_slope
 from des_cli.kinematics.twist import VARIABLES, SeatForms, SeatMotion
 from des_cli.model.arrays import Floats
+from des_cli.reduction.ground_cross import GROUND_VARIABLES, GroundCross, squares_of
 from des_cli.reduction.limit_rows import LimitRows
 from des_cli.reduction.local_bounds import AttitudeBound, LocalBound, OnsetBound
 from des_cli.reduction.motion_system import MotionExpansion, MotionSystem, factorise
@@ -79,6 +80,8 @@ class MotionProblem:
         Of the seat as the profile fixes it.
     cost : sequence of Term
         Summed up.
+    ground : GroundCross, optional
+        A further cost, of the cross-coupling in ground axes.
     budgets : sequence of Term or JointBudget
         Each at most one.
     rows : LimitRows
@@ -100,6 +103,7 @@ class MotionProblem:
     smoothing: Floats
     local: Sequence[LocalBound] = field(default_factory=tuple)
     seat: FreeSeat | None = None
+    ground: GroundCross | None = None
 
 
 class MotionProgram:
@@ -118,6 +122,11 @@ class MotionProgram:
         needs_angles = any(isinstance(bound, AttitudeBound) for bound in problem.local)
         self._base_angles = [
             self.angles.gather(problem.base, *span) if needs_angles else np.zeros((JOINTS, 0))
+            for span in self.chunks
+        ]
+        self.ground = Windows(grid, GROUND_VARIABLES)
+        self._base_ground = [
+            self.ground.gather(problem.base, *span) if problem.ground else np.zeros((0, 0))
             for span in self.chunks
         ]
         self.bounds = problem.rows.bounds
@@ -186,6 +195,9 @@ class MotionProgram:
                 else:
                     off = budget.off[:, at] + self.angles.gather(control, first, last)
                     budgets[j] += budget.scale * _square(off)
+            if problem.ground:
+                z = self._base_ground[chunk] + self.ground.gather(control, first, last)
+                cost += _square(problem.ground.residual(z))
             if problem.local:
                 angles = self._angles_of(chunk, control)
                 for found, bound in zip(local, problem.local, strict=True):
@@ -215,6 +227,8 @@ class MotionProgram:
                     off = each.off[:, local_at.at] + self.angles.gather(control, first, last)
                     total.budgets[j] += each.scale * _square(off)
                     self.angles.scatter(2.0 * each.scale * off, first, self.control(column))
+            if problem.ground:
+                total.cost += self._take_ground(problem.ground, chunk, control, share, total)
             if problem.local:
                 angles = self._angles_of(chunk, control)
                 for index, bound in enumerate(problem.local):
@@ -241,6 +255,26 @@ class MotionProgram:
     ) -> MotionSystem | None:
         """Factorise over the free unknowns."""
         return factorise(expansion, self.problem.rows, self.problem.ends, stiffness, shift)
+
+    def _take_ground(
+        self,
+        term: GroundCross,
+        chunk: int,
+        control: Floats,
+        share: float,
+        total: MotionExpansion,
+    ) -> float:
+        """Add the cost in ground axes on a chunk; return its value."""
+        first, last = self.chunks[chunk]
+        z = self._base_ground[chunk] + self.ground.gather(control, first, last)
+        residual, slope = term.residual(z), term.slope(z)
+        by_variable = np.einsum("krm,rm->km", slope, 2.0 * residual)
+        self.ground.scatter(by_variable, first, self.control(total.gradient))
+        hessian = 2.0 * squares_of(slope)
+        if share > 0.0:
+            hessian += 2.0 * share * term.curvature(z, residual)
+        self.ground.scatter_hessian(hessian, first, total.band)
+        return _square(residual)
 
     def _forms(self, x: Floats) -> tuple[SeatForms, Sequence[SeatTurn]]:
         if self.problem.seat is None:
@@ -333,9 +367,9 @@ class _Chunk:
         if isinstance(bound, AttitudeBound):
             hessian = np.stack(
                 [
-                    np.sum(stiffness * slope[k] * slope[l], axis=0)
+                    np.sum(stiffness * slope[k] * slope[n], axis=0)
                     for k in range(JOINTS)
-                    for l in range(k, JOINTS)
+                    for n in range(k, JOINTS)
                 ]
             )
             if self.share > 0.0:
@@ -355,7 +389,7 @@ class _Chunk:
 
     def finish(self) -> None:
         """Bring what was collected to the control points and the seat's angles."""
-        hessian = squares(self.slopes) + self.further
+        hessian = self.further + (squares(self.slopes) if self.slopes else 0.0)
         if self.share > 0.0:
             hessian += curvature_of(self.seat, self.multipliers)
         self.program.windows.scatter_hessian(hessian, self.first, self.total.band)

@@ -104,19 +104,19 @@ class _Rows:
 
     @property
     def last(self) -> int:
-        return self.first + self.slope.shape[-1] // POINTS
+        return self.first + int(self.slope.shape[-1]) // POINTS
 
     @property
     def _per_interval(self) -> bool:
         """Whether a row belongs to both points of an interval, and not to one."""
         points = self.slope.shape[-1]
-        return self.rows.stop - self.rows.start != self.slope.shape[1] * points
+        return bool(self.rows.stop - self.rows.start != self.slope.shape[1] * points)
 
     def sum_points(self, values: Floats) -> Floats:
         """Return the rows' values of values at points."""
         if not self._per_interval:
             return values
-        return values.reshape(len(values), POINTS, -1).sum(axis=1)
+        return np.asarray(values.reshape(len(values), POINTS, -1).sum(axis=1))
 
     def at_points(self, values: Floats) -> Floats:
         """Return at each point what its row says."""
@@ -156,9 +156,9 @@ class MotionSystem:
             [self._ends.reduce(c[:size].reshape(-1, JOINTS)).reshape(-1) for c in right.T], axis=1
         )
         motion = self._factor.solve(reduced)
-        angles = np.zeros((len(self._border), right.shape[1]))
+        angles: Floats = np.zeros((len(self._border), right.shape[1]))
         if len(self._border):
-            angles = np.linalg.solve(self._schur, right[size:] - self._border @ motion)
+            angles = np.asarray(np.linalg.solve(self._schur, right[size:] - self._border @ motion))
             motion = motion - self._answers @ angles
         full = [self._ends.full(c.reshape(-1, JOINTS)).reshape(-1) for c in motion.T]
         return np.concatenate([np.stack(full, axis=1), angles])
@@ -176,7 +176,7 @@ def factorise(
     if factor is None:
         return None
     points = len(band.data)
-    border = np.array(
+    border: Floats = np.array(
         [ends.reduce(row.reshape(-1, JOINTS)).reshape(-1) for row in expansion.border]
     ).reshape(len(expansion.border), points * JOINTS)
     system = MotionSystem(factor, ends, points, border, expansion.corner)

@@ -56,7 +56,8 @@ def find_optimum(problem: Problem, search: Search) -> Solution:
         if best.usable:
             best = search.minimise(grid, start, TOLERANCE, NEAR)
         if not best.usable:
-            best, starts = _find_best(grid, search)
+            again, starts = _find_best(grid, search)
+            best = best_of([best, again]) if len(best.x) == grid.n else again
     return make_solution(grid, best, search, starts)
 
 
@@ -82,7 +83,7 @@ def make_solution(grid: Transcription, best: Outcome, search: Search, starts: in
         message=_sentence(best, starts, search),
         control=best.x[:, 3:],
         modified=grid.motion(best.x),
-        adjoint=grid.adjoint(best.x, best.multiplier),
+        adjoint=grid.adjoint(best.x, best.multiplier, best.prices),
         cost=best.cost,
         cost_unreduced=grid.cost(grid.desired),
         optimality=best.optimality,

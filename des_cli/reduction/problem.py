@@ -51,6 +51,9 @@ class Problem:
         Its limits hold for the adapted motion; None for no limits.
     gravity : float
         [m/s^2]
+    asked : Motion, optional
+        What the profile asks for, on the same samples, where ``desired`` is its
+        executable replacement.
     """
 
     desired: Motion
@@ -64,11 +67,17 @@ class Problem:
     ends: Ends = "free"
     machine: Machine | None = None
     gravity: float = STANDARD_GRAVITY_M_S2
+    asked: Motion | None = None
 
     def __post_init__(self) -> None:
         freeze(self, "r1", (3, 3))
         freeze(self, "r2", (None,))
         freeze(self, "tracking", (3,))
+
+    @property
+    def reference(self) -> Motion:
+        """The motion that budgets are measured against."""
+        return self.desired if self.asked is None else self.asked
 
     @property
     def controls(self) -> int:
@@ -86,8 +95,16 @@ def control_weight(control: Control, r2: Floats) -> Floats:
     return np.array([r2.mean()]) if control == "scalar" else r2 / 3.0
 
 
-def pose_problem(profile: Profile, desired: Motion) -> Problem:
-    """Make the problem that a profile asks for along a desired motion."""
+def pose_problem(profile: Profile, desired: Motion, asked: Motion | None = None) -> Problem:
+    """Make the problem that a profile asks for along a desired motion.
+
+    Parameters
+    ----------
+    profile : Profile
+    desired : Motion
+    asked : Motion, optional
+        What budgets are measured against, where it is not ``desired``.
+    """
     wanted = profile.reduction
     # A weight on the whole vector is a weight on its length, whatever the axes: seat
     # axes then keep the arm's azimuth out of the arithmetic too.
@@ -104,4 +121,5 @@ def pose_problem(profile: Profile, desired: Motion) -> Problem:
         ends=wanted.ends,
         machine=profile.machine if wanted.limits == "enforce" else None,
         gravity=profile.machine.gravity,
+        asked=asked,
     )

@@ -46,6 +46,7 @@ class Search:
         tolerance: float,
         barrier: float = 1.0,
         most: int | None = None,
+        prices: Floats | None = None,
     ) -> Outcome:
         """Minimise from a start and log it, within at most ``most`` steps."""
         outcome = minimise(
@@ -54,6 +55,7 @@ class Search:
             tolerance=tolerance,
             max_iterations=self.left if most is None else min(most, self.left),
             barrier=barrier,
+            prices=prices,
             first_number=len(self.lines),
             on_iteration=self.report,
         )

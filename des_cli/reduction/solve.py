@@ -2,88 +2,134 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from des_cli.model.machine import JOINTS, Machine
+from des_cli.model.machine import Seat
 from des_cli.model.motion import Motion
-from des_cli.model.profile import Reduction
+from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution
-from des_cli.reduction.budget import pose_budget, spend_budget
+from des_cli.reduction.budget import pose_budget, spend_budgets
 from des_cli.reduction.executable import nearest_executable
+from des_cli.reduction.free import find_free_motion
+from des_cli.reduction.free_problem import FreeTask
 from des_cli.reduction.optimum import find_optimum
-from des_cli.reduction.problem import Problem
+from des_cli.reduction.problem import Problem, pose_problem
 from des_cli.reduction.report_sweep import sweep
 from des_cli.reduction.search import Report, Search
 from des_cli.reduction.zero import find_zero, pose_zero
 
 
+@dataclass(frozen=True)
+class Found:
+    """A modified motion and what it was found from.
+
+    Parameters
+    ----------
+    desired : Motion
+        What the profile asks for, or the nearest motion that the machine can execute
+        where limits are enforced.
+    seat : Seat
+        As fixed in the modified motion.
+    problem : Problem
+        The study's problem along the desired motion.
+    posed : Problem, optional
+        That problem as it was solved: a budget and the zero method bring their own
+        weights. None for a free motion, which solves another.
+    solution : Solution
+    """
+
+    desired: Motion
+    seat: Seat
+    problem: Problem
+    posed: Problem | None
+    solution: Solution
+
+
+def find_motion(profile: Profile, reference: Motion, report: Report | None = None) -> Found:
+    """Find the modified motion that a profile asks for.
+
+    Parameters
+    ----------
+    profile : Profile
+        Consistent (``consistency.require_consistent``).
+    reference : Motion
+        What the profile asks of the joints.
+    report : callable, optional
+        Called with each line of the solver's log.
+    """
+    reduction = profile.reduction
+    if moves_freely(reduction):
+        free = find_free_motion(FreeTask.of(profile, reference), report)
+        problem = pose_problem(profile, free.desired)
+        return Found(free.desired, free.seat, problem, None, free.solution)
+    desired, trouble = executable_motion(profile, reference)
+    problem = pose_problem(profile, desired, reference)
+    if trouble:
+        return Found(desired, profile.seat, problem, problem, not_attempted(problem, trouble))
+    posed, solution = solve(problem, reduction, report)
+    return Found(desired, profile.seat, problem, posed, solution)
+
+
+def moves_freely(reduction: Reduction) -> bool:
+    """Return whether the joints move freely, or per joint within budgets.
+
+    A motion per joint is a free one that stands still where the desired motion does.
+    """
+    per_joint = reduction.control == "per-joint" and bool(reduction.budget)
+    return reduction.control == "free" or per_joint
+
+
+def executable_motion(profile: Profile, reference: Motion) -> tuple[Motion, str]:
+    """Return the motion that factors act on, and why there is none that keeps the limits."""
+    if profile.reduction.limits != "enforce":
+        return reference, ""
+    return nearest_executable(profile.machine, reference)
+
+
 def solve(
-    problem: Problem, wanted: Reduction, report: Report | None = None
+    problem: Problem, reduction: Reduction, report: Report | None = None
 ) -> tuple[Problem, Solution]:
-    """Solve a problem by the method that a profile asks for.
+    """Find factors on the desired rates by the method that a profile asks for.
 
     Parameters
     ----------
     problem : Problem
-    wanted : Reduction
+    reduction : Reduction
     report : callable, optional
         Called with each line of the solver's log.
 
     Returns
     -------
     problem : Problem
-        As it was solved: a budget and the zero method bring their own weights.
+        As it was solved.
     solution : Solution
     """
-    if wanted.algorithm == "report-sweep":
-        return problem, sweep(problem, wanted.iterations)
-    search = Search(wanted.max_iterations, report)
-    if wanted.method == "zero":
+    if reduction.algorithm == "report-sweep":
+        return problem, sweep(problem, reduction.iterations)
+    search = Search(reduction.max_iterations, report)
+    if reduction.method == "zero":
         posed = pose_zero(problem)
-        return posed, find_zero(posed, np.diag(problem.r1) > 0.0, wanted.tolerance, search)
-    if wanted.budget:
-        ((metric, budget),) = ((b.metric, b.most) for b in wanted.budget)
+        return posed, find_zero(posed, np.diag(problem.r1) > 0.0, reduction.tolerance, search)
+    if reduction.budget:
         posed = pose_budget(problem)
-        return posed, spend_budget(posed, metric, budget, search)
+        return posed, spend_budgets(posed, reduction.budget, search)
     return problem, find_optimum(problem, search)
-
-
-def make_executable(machine: Machine, desired: Motion) -> tuple[Motion, str]:
-    """Replace a desired motion by the nearest one inside the limits.
-
-    Returns
-    -------
-    motion : Motion
-    trouble : str
-        Empty, or why there is none.
-    """
-    for j, (joint, limit) in enumerate(zip(JOINTS, machine.limits, strict=True)):
-        first = abs(float(desired.angle[0, j]))
-        if first > limit.angle:
-            return desired, (
-                f"the {joint} starts at {first:.4g} rad, outside its limit of {limit.angle:.4g} "
-                f"rad, at t = {desired.t[0]:g} s; start it inside"
-            )
-    motion, outcome = nearest_executable(machine, desired)
-    if outcome is not None and not outcome.usable:
-        return motion, (
-            "no motion near the desired one keeps the limits: the search for it ended with "
-            f"the limits off by {outcome.infeasibility:.1e} (relative)"
-        )
-    return motion, ""
 
 
 def not_attempted(problem: Problem, why: str) -> Solution:
     """Return the solution of a problem that has no executable motion to start from."""
     n = len(problem.desired.t)
+    nan = float("nan")
     return Solution(
         status="infeasible",
         message=why,
         control=np.ones((n, problem.controls)),
         modified=problem.desired,
         adjoint=np.zeros((n, 3)),
-        cost=float("nan"),
-        cost_unreduced=float("nan"),
-        optimality=float("nan"),
+        cost=nan,
+        cost_unreduced=nan,
+        optimality=nan,
         iterations=0,
     )

@@ -8,6 +8,7 @@ quadrature weight, the weight matrix and the budget.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -38,6 +39,11 @@ class Term:
     root: Floats
     reference: Floats | None = None
 
+    @cached_property
+    def _diagonal(self) -> Floats | None:
+        diagonal = np.diag(self.root)
+        return diagonal[:, None] if np.array_equal(self.root, np.diag(diagonal)) else None
+
     def residual(self, seat: SeatMotion, at: slice) -> Floats:
         """Return the residuals at points, (3, m)."""
         value = value_of(seat, self.quantity)
@@ -46,9 +52,8 @@ class Term:
 
     def weigh(self, vectors: Floats) -> Floats:
         """Return the root times vectors whose component is the last axis but one."""
-        diagonal = np.diag(self.root)
-        if np.array_equal(self.root, np.diag(diagonal)):
-            return np.asarray(vectors * diagonal[:, None])
+        if self._diagonal is not None:
+            return np.asarray(vectors * self._diagonal)
         return np.asarray(np.einsum("rc,...cm->...rm", self.root, vectors))
 
     def multiplier(self, residual: Floats) -> Floats:
@@ -109,8 +114,6 @@ def squares(slopes: list[Floats]) -> Floats:
         stacked = np.concatenate(few, axis=1)
         at = 0
         for k in range(_RATE_VARIABLES):
-            total[at : at + _RATE_VARIABLES - k] += np.einsum(
-                "rm,lrm->lm", stacked[k], stacked[k:]
-            )
+            total[at : at + _RATE_VARIABLES - k] += np.einsum("rm,lrm->lm", stacked[k], stacked[k:])
             at += VARIABLES - k
     return total

@@ -13,7 +13,7 @@ every interval; a sample at which the desired rate steps counts once for each si
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,24 +25,8 @@ from des_cli.reduction.constraints import limit_rows
 from des_cli.reduction.points import Points
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.rates import AdaptedRates, DesiredRates, Rates
-from des_cli.solver.program import Expansion, Rows
+from des_cli.solver.program import Expansion, Measure, Rows
 from des_cli.study.backward_forward import follow
-
-
-class Measure(ABC):
-    """A measure of a whole motion, scaled so that its budget is one."""
-
-    @abstractmethod
-    def value(self, x: Floats) -> float:
-        """Return the value of an iterate."""
-
-    def spent(self, x: Floats) -> float:
-        """Return the squared metric over its squared budget: the value, where it is smooth."""
-        return self.value(x)
-
-    @abstractmethod
-    def expand(self, x: Floats) -> Expansion:
-        """Expand the value to second order; the Hessian may be a Gauss-Newton one."""
 
 
 @dataclass(frozen=True)
@@ -92,8 +76,8 @@ class Transcription:
             self.rows += limit_rows(problem.machine, self.rates, motion.step, 3 + self.m)
         self.offset = np.zeros((len(self.points.node), 3))
         """Added to the Coriolis vector at the points where the cost weighs it."""
-        self.priced: list[tuple[float, Measure]] = []
-        """Measures that are paid for in the cost, with their prices."""
+        self.budgets: list[Measure] = []
+        """Measures that stay at or below one."""
         self.scale = self._typical_size()
 
     def _rates(self) -> Rates:
@@ -165,9 +149,8 @@ class Transcription:
         return coriolis(problem.chain, here[:, :3], self.rates.value(here), problem.axes)
 
     def cost(self, x: Floats) -> float:
-        """Return J of an iterate, and the price of what is paid for."""
-        cost = float(self.points.weight @ self._density(x, self.coriolis(x)))
-        return cost + sum(price * measure.value(x) for price, measure in self.priced)
+        """Return J of an iterate."""
+        return float(self.points.weight @ self._density(x, self.coriolis(x)))
 
     def _density(self, x: Floats, c: Floats) -> Floats:
         problem, here = self.problem, self.points.gather(x)
@@ -223,15 +206,12 @@ class Transcription:
         )
         diagonal = np.concatenate([problem.tracking, problem.r2])
         hessian[:, np.arange(3 + self.m), np.arange(3 + self.m)] += diagonal
-        expansion = Expansion(
+        return Expansion(
             cost=float(points.weight @ self._density(x, form.value)),
             gradient=points.scatter(points.weight[:, None] * gradient, self.n),
             hessian=points.scatter(points.weight[:, None, None] * hessian, self.n),
             bend=bend,
         )
-        for price, measure in self.priced:
-            expansion = expansion.plus(price, measure.expand(x))
-        return expansion
 
     def _point_gradient(self, x: Floats, form: CoriolisForm) -> tuple[Floats, Floats]:
         """Return the running cost's gradient at the points, and R1 times what it weighs."""
@@ -246,10 +226,7 @@ class Transcription:
     def gradient(self, x: Floats) -> Floats:
         """Return dJ/dx at fixed neighbours, (n, 3 + m)."""
         density = self._point_gradient(x, self.coriolis_form(x))[0]
-        gradient = self.points.scatter(self.points.weight[:, None] * density, self.n)
-        for price, measure in self.priced:
-            gradient = gradient + price * measure.expand(x).gradient
-        return gradient
+        return self.points.scatter(self.points.weight[:, None] * density, self.n)
 
     # ------------------------------------------------------------------ first order
     def reduced_gradient(self, x: Floats) -> Floats:
@@ -262,7 +239,9 @@ class Transcription:
         reduced[1:] -= (later[:, None, :] @ ahead[:, :, 3:])[:, 0]
         return reduced
 
-    def adjoint(self, x: Floats, multiplier: Floats) -> Floats:
+    def adjoint(
+        self, x: Floats, multiplier: Floats, prices: Sequence[float] | Floats = ()
+    ) -> Floats:
         """Return the costate of the angles at each sample, (n, 3).
 
         Parameters
@@ -271,8 +250,13 @@ class Transcription:
         multiplier : (n - 1, 3) array
             Of ``defect``: minus the costate between samples. Half a sample's
             weight of dJ/dtheta leads to the sample itself.
+        prices : sequence of float
+            Multipliers of the budgets.
         """
-        force = self.gradient(x)[:, :3] / self.weight[:, None]
+        gradient = self.gradient(x)
+        for price, measure in zip(prices, self.budgets, strict=True):
+            gradient += price * measure.expand(x).gradient
+        force = gradient[:, :3] / self.weight[:, None]
         half = 0.5 * self.problem.desired.step[:, None]
         between = -multiplier  # of the interval's constraint, in the sign of (42) and (47)
         return np.vstack([between + half * force[:-1], between[-1:] - half[-1:] * force[-1:]])

@@ -44,16 +44,16 @@ class Windows:
         for k, (order, joint) in enumerate(variables):
             local[k, :, :, joint] = weights[order]
         self._local = local.reshape(self.count * POINTS, WINDOW)
-        self.pairs = [(k, l) for k in range(self.count) for l in range(k, self.count)]
+        self.pairs = [(k, n) for k in range(self.count) for n in range(k, self.count)]
         self._to_band = self._pair_matrix(local.reshape(self.count, POINTS, WINDOW))
 
     def _pair_matrix(self, local: Floats) -> Floats:
         """Return what each pair of variables adds to the band, (pairs * points, 4 * 36)."""
         matrix = np.zeros((len(self.pairs), POINTS, ORDER, JOINTS, WINDOW))
-        for index, (k, l) in enumerate(self.pairs):
+        for index, (k, n) in enumerate(self.pairs):
             for point in range(POINTS):
-                outer = np.outer(local[k, point], local[l, point])
-                if k != l:
+                outer = np.outer(local[k, point], local[n, point])
+                if k != n:
                     outer = outer + outer.T
                 for a in range(ORDER):
                     for j in range(JOINTS):
@@ -83,7 +83,7 @@ class Windows:
         first, last : int
         """
         window = np.concatenate([control[first + a : last + a].T for a in range(ORDER)])
-        return (self._local @ window).reshape(self.count, POINTS * (last - first))
+        return np.asarray((self._local @ window).reshape(self.count, POINTS * (last - first)))
 
     def scatter(self, gradient: Floats, first: int, total: Floats) -> None:
         """Add a gradient by local variables, (v, points * count), to one by control points."""
@@ -111,7 +111,7 @@ class Windows:
         count = slope.shape[-1] // POINTS
         parts = slope.reshape(self.count, -1, POINTS, count).transpose(0, 2, 1, 3)
         flat = self._local.T @ parts.reshape(self.count * POINTS, -1)
-        return flat.reshape(WINDOW, *slope.shape[1:-1], count)
+        return np.asarray(flat.reshape(WINDOW, *slope.shape[1:-1], count))
 
     def scatter_squares(self, slope: Floats, first: int, band: SymmetricBand) -> None:
         """Add the sum of squares of derivatives by the window, (12, r, count)."""

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 from des_cli.files.run_folder import StoredRun
+from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
-from des_cli.plots.standing import budget_words, status_words
+from des_cli.plots.standing import status_words
 from des_cli.report.numbers import DASH, change, percent, plain, words
+from des_cli.results.budgets import spent_budgets
+from des_cli.results.ends import When, end_words
 from des_cli.results.reading import lookup, number
+from des_cli.results.worse import worse_paths
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,32 +43,76 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class _Quantity:
-    """A number that runs are compared by; ``better`` is the larger (1) or the smaller (-1)."""
+    """A number that runs are compared by; ``better`` is the larger (1) or the smaller (-1).
+
+    Where ``before`` is given, what stands there is shown before the number.
+    """
 
     label: str
     path: str
     write: Callable[[float | None], str]
     better: int
+    before: str = ""
+
+
+def _felt(label: str, stem: str, unit: str) -> _Quantity:
+    """Return a quantity of the pilot's, before and after; less is better."""
+    return _Quantity(label, f"{stem}_after_{unit}", _three, -1, f"{stem}_before_{unit}")
+
+
+def _three(value: float | None) -> str:
+    return plain(value, 3)
+
+
+_TOTAL = "felt.seat_angular_acceleration.magnitude"
 
 
 _GROUPS: tuple[tuple[str, tuple[_Quantity, ...]], ...] = (
     (
-        "Change of the Coriolis, ∫ after² against ∫ before²",
+        "What the pilot feels, before → after",
         (
-            _Quantity("BB3", "coriolis.bb3.reduction", change, 1),
-            _Quantity("whole vector", "coriolis.vector.reduction", change, 1),
-            _Quantity("seat x", "coriolis.seat_x.reduction", change, 1),
-            _Quantity("seat y", "coriolis.seat_y.reduction", change, 1),
-            _Quantity("seat z", "coriolis.seat_z.reduction", change, 1),
+            _felt("cross-coupling, rms [rad/s²]", "coriolis.vector.rms", "rad_s2"),
+            _felt("total angular acceleration, rms [rad/s²]", f"{_TOTAL}.rms", "rad_s2"),
+            _felt("… peak [rad/s²]", f"{_TOTAL}.peak", "rad_s2"),
+            _felt("peak Gy [g]", "felt.seat_g.gy.peak", "g"),
+            _felt("onset of Gx [g/s]", "felt.seat_g.gx.onset", "g_s"),
+            _felt("… of Gy", "felt.seat_g.gy.onset", "g_s"),
+            _felt("… of Gz", "felt.seat_g.gz.onset", "g_s"),
         ),
     ),
     (
-        "What it costs",
+        "How far from the profile",
+        (
+            _Quantity("seat rate", "fidelity.seat_rate_deviation_relative", percent, -1),
+            _Quantity(
+                "total angular acceleration, rms [rad/s²]",
+                "fidelity.seat_angular_acceleration_rms_error_rad_s2",
+                _three,
+                -1,
+            ),
+            _Quantity("seat G, rms [g]", "fidelity.seat_g_rms_error_g", _three, -1),
+            _Quantity("tilt, at most [deg]", "fidelity.tilt_error_max_deg", _three, -1),
+            _Quantity(
+                "seat rate, by keeping the limits alone",
+                "executable.seat_rate_deviation_relative",
+                percent,
+                0,
+            ),
+        ),
+    ),
+    (
+        "Change of the cross-coupling, ∫ after² against ∫ before²",
+        tuple(
+            _Quantity(component.label, f"coriolis.{component.key}.reduction", change, 1)
+            for component in COMPONENTS
+            if component.key not in ("ab3", "cb3")
+        ),
+    ),
+    (
+        "The study's measure",
         (
             _Quantity("joint deviation", "fidelity.joint_deviation_relative", percent, -1),
             _Quantity("… squared", "fidelity.joint_deviation_relative_squared", percent, -1),
-            _Quantity("seat rate deviation", "fidelity.seat_rate_deviation_relative", percent, -1),
-            _Quantity("seat G deviation", "fidelity.seat_g_deviation_relative", percent, -1),
             _Quantity(
                 "desired motion changed for the limits",
                 "executable.joint_change_relative",
@@ -114,9 +162,11 @@ def comparison_rows(runs: Sequence[StoredRun]) -> list[Row]:
         Row("control", tuple(Cell(words(lookup(each, "solver.control"))) for each in metrics)),
         Row("axes", tuple(Cell(words(lookup(each, "solver.axes"))) for each in metrics)),
         Row("budget", tuple(_budget(each) for each in metrics)),
-        Row("cost J", tuple(Cell(plain(number(each, "solver.cost"))) for each in metrics)),
         Row("limits", tuple(limits_cell(each) for each in metrics)),
+        Row("cost J", tuple(Cell(plain(number(each, "solver.cost"))) for each in metrics)),
     ]
+    for when in get_args(When):
+        rows.append(Row(when, tuple(Cell(end_words(each, when) or DASH) for each in metrics)))
     for heading, quantities in _GROUPS:
         rows += [Row(heading), *(_compared(quantity, metrics) for quantity in quantities)]
     return rows
@@ -146,8 +196,7 @@ def _status(metrics: Mapping[str, Any]) -> Cell:
 
 
 def _budget(metrics: Mapping[str, Any]) -> Cell:
-    # what was spent of it stands among the costs
-    return Cell(budget_words(metrics).replace(" at most ", " ≤ ").partition(", is ")[0] or DASH)
+    return Cell(", ".join(each.allowed for each in spent_budgets(metrics)) or DASH)
 
 
 def _compared(quantity: _Quantity, metrics: Sequence[Mapping[str, Any]]) -> Row:
@@ -156,11 +205,15 @@ def _compared(quantity: _Quantity, metrics: Sequence[Mapping[str, Any]]) -> Row:
     # With a single run, or equal ones, there is no best.
     best = max(known) if quantity.better and len(set(known)) > 1 else None
     cells = []
-    for value in values:
+    for each, value in zip(metrics, values, strict=True):
         mark = ""
         if value is not None and quantity.better * value == best:
             mark = "good"
-        if value is not None and quantity.better > 0 and value < 0:
+        grew = value is not None and quantity.better > 0 and value < 0
+        if grew or quantity.path in worse_paths(each):
             mark = "bad"
-        cells.append(Cell(quantity.write(value), mark))
+        text = quantity.write(value)
+        if quantity.before and value is not None:
+            text = f"{quantity.write(number(each, quantity.before))} → {text}"
+        cells.append(Cell(text, mark))
     return Row(quantity.label, tuple(cells))

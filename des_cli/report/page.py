@@ -19,12 +19,20 @@ NOMENCLATURE: tuple[tuple[str, str], ...] = (
     ("p", "factor on the joint rates, one for all joints or one for each [–]"),
     (
         "AB3, BB3, CB3",
-        "components of the Coriolis vector c, the rate-product part of the seat's angular "
-        "acceleration, along the inertial axes i₀, j₀, k₀ [rad/s²]",
+        "components of the Coriolis cross-coupling vector c, the rate-product part of the seat's "
+        "angular acceleration, along the inertial axes i₀, j₀, k₀ [rad/s²]",
     ),
     ("seat x, y, z", "the same vector along the seat's axes: forward, right, down [rad/s²]"),
+    (
+        "α = dW/dt",
+        "total angular acceleration of the seat, along its axes, cross-coupling and joint "
+        "accelerations together: what the semicircular canals answer to [rad/s²]",
+    ),
+    ("p, q, r", "roll, pitch and yaw rate of the seat, along its axes [rad/s]"),
     ("Gx, Gy, Gz", "specific force at the seat, gravity included [g = 32.2 ft/s²]"),
-    ("change", "∫ after² dt / ∫ before² dt − 1; before is the desired motion, after the modified"),
+    ("change", "∫ after² dt / ∫ before² dt − 1; before is the profile, after the modified motion"),
+    ("onset", "largest change of a component of G over a tenth of a second, per second"),
+    ("tilt", "angle between the G-vectors before and after"),
     (
         "joint deviation",
         "‖θ − Θ‖ / ‖Θ‖ over all joints and samples; the arm's angle, which the pilot does not "

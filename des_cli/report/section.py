@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from des_cli.files.run_folder import StoredRun
+from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
 from des_cli.plots import CAPTIONS, draw_plots
 from des_cli.plots.standing import budget_words
@@ -22,11 +23,19 @@ from des_cli.report.numbers import (
     plain,
     words,
 )
-from des_cli.report.summary import COMPONENTS, summary_sentences
+from des_cli.report.summary import summary_sentences
+from des_cli.report.tiles import Tile, felt_tiles
 from des_cli.results.reading import lookup, number
+from des_cli.results.worse import worse_paths
 
 # Rounding of the solver's last step is no violation.
 _ROUNDING = 1e-9
+
+_LIMITED = (
+    ("rate", "rad_s", "rad/s"),
+    ("acceleration", "rad_s2", "rad/s²"),
+    ("jerk", "rad_s3", "rad/s³"),
+)
 
 _MOTIONS = ("desired", "modified")
 _SOLVER_WORDS = ("method", "algorithm", "control", "axes", "jacobian")
@@ -59,7 +68,9 @@ class Section:
     name, what : str
         What the run is called, and in one line what was done with it.
     sentences, notices, violations : list of str
-    coriolis, limits, joints, seat : list of list of Cell
+    tiles : list of Tile
+        What the pilot feels, at the head of the section.
+    coriolis, turning, limits, joints, seat : list of list of Cell
         Rows of the tables.
     facts : list of (str, str)
         Of the solver, the profile and the tool.
@@ -72,7 +83,9 @@ class Section:
     sentences: list[str]
     notices: list[str]
     violations: list[str]
+    tiles: list[Tile]
     coriolis: list[list[Cell]]
+    turning: list[list[Cell]]
     limits: list[list[Cell]]
     joints: list[list[Cell]]
     seat: list[list[Cell]]
@@ -103,7 +116,9 @@ def run_section(run: StoredRun, label: str, number_of_run: int) -> Section:
         sentences=summary_sentences(metrics),
         notices=_texts(lookup(metrics, "notices")),
         violations=_texts(lookup(metrics, "violations")),
+        tiles=felt_tiles(metrics),
         coriolis=_coriolis_rows(metrics),
+        turning=_turning_rows(metrics),
         limits=_limit_rows(metrics),
         joints=_joint_rows(metrics),
         seat=_seat_rows(metrics),
@@ -115,7 +130,7 @@ def run_section(run: StoredRun, label: str, number_of_run: int) -> Section:
 def _what(metrics: Mapping[str, Any]) -> str:
     text = {key: words(lookup(metrics, f"solver.{key}")) for key in _SOLVER_WORDS}
     return (
-        f"{text['method']} Coriolis by {text['algorithm']} · {text['control']} control · "
+        f"{text['method']} cross-coupling by {text['algorithm']} · {text['control']} control · "
         f"{text['axes']} axes · Jacobian at {text['jacobian']} motion · "
         f"{words(lookup(metrics, 'profile.samples'))} samples over "
         f"{plain(number(metrics, 'profile.duration_s'))}{NO_BREAK}s"
@@ -124,30 +139,53 @@ def _what(metrics: Mapping[str, Any]) -> str:
 
 def _coriolis_rows(metrics: Mapping[str, Any]) -> list[list[Cell]]:
     rows = []
-    for key, name in COMPONENTS.items():
-        reduction = number(metrics, f"coriolis.{key}.reduction")
+    for component in COMPONENTS:
+        stem = f"coriolis.{component.key}"
+        reduction = number(metrics, f"{stem}.reduction")
         mark = "bad" if reduction is not None and reduction < 0 else ""
-        values = ("rms_before", "rms_after", "peak_before", "peak_after")
         rows.append(
             [
-                Cell(name.removeprefix("the ")),
+                Cell(component.label),
                 Cell(change(reduction), mark),
-                *(
-                    Cell(fixed(number(metrics, f"coriolis.{key}.{value}_rad_s2"), 4))
-                    for value in values
-                ),
+                *(Cell(fixed(number(metrics, path), 4)) for path in _size_paths(stem, "rad_s2")),
             ]
         )
     return rows
 
 
+def _turning_rows(metrics: Mapping[str, Any]) -> list[list[Cell]]:
+    """Return the seat's rates and its total angular acceleration, a row a component."""
+    rows, worse = [], worse_paths(metrics)
+    for section, axes, symbol, unit, suffix in (
+        ("seat_rate", "pqr", "", "rad/s", "rad_s"),
+        ("seat_angular_acceleration", "xyz", "α", "rad/s²", "rad_s2"),
+    ):
+        whole = f"|{symbol or 'W'}|"
+        for key, name in (*((axis, f"{symbol}{axis}") for axis in axes), ("magnitude", whole)):
+            stem = f"felt.{section}.{key}"
+            cells = [
+                Cell(fixed(number(metrics, path), 4), "bad" if path in worse else "")
+                for path in _size_paths(stem, suffix)
+            ]
+            if any(cell.text != DASH for cell in cells):
+                rows.append([Cell(f"{name} [{unit}]"), *cells])
+    return rows
+
+
+def _size_paths(stem: str, suffix: str) -> list[str]:
+    """Return the paths of RMS before and after, then of peak before and after."""
+    return [
+        f"{stem}.{kind}_{when}_{suffix}" for kind in ("rms", "peak") for when in ("before", "after")
+    ]
+
+
 def _limit_rows(metrics: Mapping[str, Any]) -> list[list[Cell]]:
     rows = []
     for joint in JOINTS:
-        for quantity, unit in (("rate", "rad_s"), ("acceleration", "rad_s2")):
+        for quantity, unit, shown in _LIMITED:
             limit = number(metrics, f"limits.modified.{joint}.{quantity}_limit_{unit}")
             row = [
-                Cell(f"{joint} {quantity} [{'rad/s' if unit == 'rad_s' else 'rad/s²'}]"),
+                Cell(f"{joint} {quantity} [{shown}]"),
                 Cell(plain(limit)),
             ]
             for motion in _MOTIONS:
@@ -160,6 +198,13 @@ def _limit_rows(metrics: Mapping[str, Any]) -> list[list[Cell]]:
         if any(steps):
             values = (Cell(fixed(step, 4)) for step in steps)
             rows.append([Cell(f"{joint} step of the rate [rad/s]"), Cell(DASH), *values])
+        changes = [
+            plain(number(metrics, f"limits.{motion}.{joint}.acceleration_sign_changes"))
+            for motion in _MOTIONS
+        ]
+        if any(text != DASH for text in changes):
+            label = f"{joint}, sign changes of its acceleration"
+            rows.append([Cell(label), Cell(""), *map(Cell, changes)])
         rows.append([Cell(f"{joint}, all limits"), Cell(""), *_verdicts(metrics, joint)])
     return rows
 
@@ -176,29 +221,33 @@ def _verdicts(metrics: Mapping[str, Any], joint: str) -> list[Cell]:
 def _joint_rows(metrics: Mapping[str, Any]) -> list[list[Cell]]:
     rows = []
     for joint in JOINTS:
-        cells = [Cell(joint)]
-        for key in ("joint_rms_rad", "end_error_rad"):
-            value = number(metrics, f"fidelity.{key}.{joint}")
-            cells.append(Cell(fixed(None if value is None else math.degrees(value))))
-        rows.append(cells)
+        paths = (
+            f"joint_rms_rad.{joint}",
+            f"start_error.{joint}_rad",
+            f"start_error.{joint}_rad_s",
+            f"end_error_rad.{joint}",
+            f"end_error_rad_s.{joint}",
+        )
+        values = [number(metrics, f"fidelity.{path}") for path in paths]
+        degrees = (None if value is None else math.degrees(value) for value in values)
+        rows.append([Cell(joint), *(Cell(fixed(value)) for value in degrees)])
     return rows
 
 
 def _seat_rows(metrics: Mapping[str, Any]) -> list[list[Cell]]:
-    keys = (
-        "peak_before_g",
-        "peak_after_g",
-        "onset_before_g_s",
-        "onset_after_g_s",
-        "jump_before_g",
-        "jump_after_g",
-        "rms_error_g",
-    )
-    rows = []
-    for axis in "xyz":
-        values = [number(metrics, f"fidelity.seat_g.g{axis}.{key}") for key in keys]
-        if any(value is not None for value in values):
-            rows.append([Cell(f"G{axis}"), *(Cell(fixed(value)) for value in values)])
+    rows, worse = [], worse_paths(metrics)
+    for axis in ("gx", "gy", "gz"):
+        stem = f"felt.seat_g.{axis}"
+        cells = []
+        for kind, suffix in (("min", "g"), ("max", "g"), ("onset", "g_s"), ("jump", "g")):
+            paths = [f"{stem}.{kind}_{when}_{suffix}" for when in ("before", "after")]
+            before, after = (number(metrics, path) for path in paths)
+            known = before is not None and after is not None
+            text = f"{fixed(before)} → {fixed(after)}" if known else DASH
+            cells.append(Cell(text, "bad" if paths[1] in worse else ""))
+        cells.append(Cell(fixed(number(metrics, f"{stem}.rms_error_g"))))
+        if any(cell.text != DASH for cell in cells):
+            rows.append([Cell(axis.capitalize()), *cells])
     return rows
 
 
@@ -221,8 +270,9 @@ def _facts(run: StoredRun) -> list[tuple[str, str]]:
             percent(number(metrics, "fidelity.mean_square_one_minus_p")),
         ),
         (
-            "largest attitude error",
-            f"{plain(number(metrics, 'fidelity.attitude_error_max_deg'), 3)} deg",
+            "largest error of attitude, of tilt",
+            f"{plain(number(metrics, 'fidelity.attitude_error_max_deg'), 3)} deg, "
+            f"{plain(number(metrics, 'fidelity.tilt_error_max_deg'), 3)} deg",
         ),
         (
             "singularity",

@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from des_cli.model.coriolis import COMPONENTS
 from des_cli.plots.standing import budget_words, change_words
 from des_cli.plots.weighted import weighted_component
 from des_cli.report.comparison import limits_cell
 from des_cli.report.numbers import percent, plain, words
 from des_cli.results.reading import lookup, number
+from des_cli.results.worse import worse_words
 
-COMPONENTS: Mapping[str, str] = {
-    "bb3": "BB3",
-    "ab3": "AB3",
-    "cb3": "CB3",
-    "vector": "the whole vector",
-    "seat_x": "seat x",
-    "seat_y": "seat y",
-    "seat_z": "seat z",
+_NAMES: Mapping[str, str] = {
+    component.key: component.label if component.axes else f"the {component.label}"
+    for component in COMPONENTS
 }
+
+_TOTAL = "felt.seat_angular_acceleration.magnitude"
 
 # A component that grows by less is rounding, or noise in a component that
 # hardly exists.
@@ -37,19 +36,26 @@ def summary_sentences(metrics: Mapping[str, Any]) -> list[str]:
     Returns
     -------
     list of str
-        The gain and its cost; what was allowed; what keeping the limits changed;
-        what got worse; what is wrong; what a simpler way would have cost. What
-        is not known is left out.
+        What got worse to sit in; the gain; what is felt of it; what was allowed;
+        what keeping the limits changed; which components grew; what is wrong; what
+        it and simpler ways cost by the study's measure. What is not known is left out.
     """
     sentences = [
+        _worse(metrics),
         _gain(metrics),
-        _allowed(metrics),
         _felt(metrics),
+        _allowed(metrics),
         _changed(metrics),
         _moved(metrics),
         _wrong(metrics),
+        _study(metrics),
     ]
     return [sentence for sentence in [*sentences, *_baselines(metrics)] if sentence]
+
+
+def _worse(metrics: Mapping[str, Any]) -> str:
+    found = worse_words(metrics).replace("->", "→").replace(" -", " −")
+    return f"{found[0].upper()}{found[1:]}." if found else ""
 
 
 def _gain(metrics: Mapping[str, Any]) -> str:
@@ -57,21 +63,18 @@ def _gain(metrics: Mapping[str, Any]) -> str:
     keys = [weighted, "vector"] if weighted else ["vector", "seat_x", "seat_y", "seat_z"]
     reductions = {key: number(metrics, f"coriolis.{key}.reduction") for key in keys}
     taken = [
-        f"{percent(value)} off {COMPONENTS[key]}"
+        f"{percent(value)} off {_NAMES[key]}"
         for key, value in reductions.items()
         if value is not None and value >= 0
     ]
-    cost = percent(number(metrics, "fidelity.joint_deviation_relative"))
-    squared = percent(number(metrics, "fidelity.joint_deviation_relative_squared"))
-    price = f"{cost} joint deviation ({squared} squared)"
     if not taken:
-        return f"Took nothing off the Coriolis, at {price}."
-    return f"Took {_listed(taken)} for {price}."
+        return "Took nothing off the cross-coupling."
+    return f"Took {_listed(taken)}."
 
 
 def _allowed(metrics: Mapping[str, Any]) -> str:
     budget = budget_words(metrics)
-    return f"Its budget: {budget}." if budget else ""
+    return f"Spent of its budget: {budget}." if budget else ""
 
 
 def _changed(metrics: Mapping[str, Any]) -> str:
@@ -89,20 +92,32 @@ def _changed(metrics: Mapping[str, Any]) -> str:
 
 def _felt(metrics: Mapping[str, Any]) -> str:
     rate = number(metrics, "fidelity.seat_rate_deviation_relative")
-    force = number(metrics, "fidelity.seat_g_deviation_relative")
     error = number(metrics, "fidelity.seat_g_rms_error_g")
-    if rate is None or force is None:
+    before, after = (number(metrics, f"{_TOTAL}.rms_{when}_rad_s2") for when in ("before", "after"))
+    parts = []
+    if rate is not None:
+        parts.append(f"the seat's angular rate is off by {percent(rate)}")
+    if error is not None:
+        parts.append(f"its G-vector by {plain(error, 3)} g rms")
+    if before is not None and after is not None:
+        parts.append(
+            f"the total angular acceleration is {plain(after, 3)} rad/s² rms, "
+            f"{plain(before, 3)} before"
+        )
+    return f"What the pilot feels of it: {_listed(parts)}." if parts else ""
+
+
+def _study(metrics: Mapping[str, Any]) -> str:
+    cost = number(metrics, "fidelity.joint_deviation_relative")
+    squared = number(metrics, "fidelity.joint_deviation_relative_squared")
+    if cost is None:
         return ""
-    rms = f" ({plain(error, 3)} g rms)" if error is not None else ""
-    return (
-        f"What the pilot feels of it: the seat's angular rate is off by {percent(rate)}, "
-        f"its G-vector by {percent(force)}{rms}."
-    )
+    return f"By the study's measure: {percent(cost)} joint deviation ({percent(squared)} squared)."
 
 
 def _moved(metrics: Mapping[str, Any]) -> str:
     grown = []
-    for key, name in COMPONENTS.items():
+    for key, name in _NAMES.items():
         reduction = number(metrics, f"coriolis.{key}.reduction")
         if reduction is not None and reduction < -_WORTH_A_WORD:
             grown.append(f"{name} by {percent(-reduction)}")

@@ -48,10 +48,13 @@ class Worse:
     label : str
     text : str
         Its numbers, with their unit.
+    paths : tuple of str
+        Where the worse numbers stand in the metrics.
     """
 
     label: str
     text: str
+    paths: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.label} {self.text}"
@@ -88,43 +91,52 @@ def worse_words(metrics: Mapping[str, Any], *, short: bool = False) -> str:
     return f"worse to sit in: {told}" if told else ""
 
 
+def worse_paths(metrics: Mapping[str, Any]) -> frozenset[str]:
+    """Return where the numbers stand in the metrics that got worse."""
+    return frozenset(path for each in find_worse(metrics) for path in each.paths)
+
+
 def _grew(before: float, after: float, least: float) -> bool:
     return after - before > max(SHARE * before, least)
 
 
 def _angular(metrics: Mapping[str, Any]) -> list[Worse]:
-    found = []
+    texts, paths = [], []
     for kind in ("rms", "peak"):
-        before = number(metrics, f"{_TOTAL}.{kind}_before_rad_s2")
-        after = number(metrics, f"{_TOTAL}.{kind}_after_rad_s2")
+        path = f"{_TOTAL}.{kind}_after_rad_s2"
+        before, after = number(metrics, f"{_TOTAL}.{kind}_before_rad_s2"), number(metrics, path)
         if before is None or after is None:
             continue
         if _grew(before, after, LEAST_ANGULAR_ACCELERATION):
             numbers = f"{before:.3g} -> {after:.3g} rad/s²"
-            found.append(f"{numbers} rms" if kind == "rms" else f"peak {numbers}")
-    return [Worse("total angular acceleration", ", ".join(found))] if found else []
+            texts.append(f"{numbers} rms" if kind == "rms" else f"peak {numbers}")
+            paths.append(path)
+    label = "total angular acceleration"
+    return [Worse(label, ", ".join(texts), tuple(paths))] if texts else []
 
 
 def _sideways(metrics: Mapping[str, Any]) -> list[Worse]:
-    before = number(metrics, "felt.seat_g.gy.peak_before_g")
-    after = number(metrics, "felt.seat_g.gy.peak_after_g")
+    path = "felt.seat_g.gy.peak_after_g"
+    before, after = number(metrics, "felt.seat_g.gy.peak_before_g"), number(metrics, path)
     if before is None or after is None or after - before <= LEAST_GY:
         return []
-    return [Worse("peak Gy", f"{before:.2g} -> {after:.2g} g")]
+    return [Worse("peak Gy", f"{before:.2g} -> {after:.2g} g", (path,))]
 
 
 def _onset(metrics: Mapping[str, Any]) -> list[Worse]:
     """Return the onset of the axis on which it grew most."""
     grown = []
     for axis in ("gx", "gy", "gz"):
+        path = f"felt.seat_g.{axis}.onset_after_g_s"
         before = number(metrics, f"felt.seat_g.{axis}.onset_before_g_s")
-        after = number(metrics, f"felt.seat_g.{axis}.onset_after_g_s")
+        after = number(metrics, path)
         if before is not None and after is not None and _grew(before, after, LEAST_ONSET):
-            grown.append((after - before, axis, before, after))
+            grown.append((after - before, axis, f"{before:.2g} -> {after:.2g} g/s", path))
     if not grown:
         return []
-    _, axis, before, after = max(grown)
-    return [Worse(f"{axis.capitalize()} onset", f"{before:.2g} -> {after:.2g} g/s")]
+    _, axis, text, _ = max(grown)
+    paths = tuple(path for *_, path in grown)
+    return [Worse(f"{axis.capitalize()} onset", text, paths)]
 
 
 def _start(metrics: Mapping[str, Any]) -> list[Worse]:

@@ -26,9 +26,9 @@ class Part:
     row, column : int
         Where in the block they begin.
     ahead : int
-        0 on the diagonal; 1 where columns belong to the next sample, -1 where rows do.
+        How many samples its columns are ahead of its rows.
     first : int
-        The sample of the first one: of its rows, or with ``ahead`` -1 of its columns.
+        The sample of the first one: of its rows, or where these are ahead of its columns.
     """
 
     values: Floats
@@ -39,7 +39,7 @@ class Part:
 
     def used(self) -> Flags:
         """Return the places that are not zero in every block, (r, c)."""
-        return self.values.any(axis=0)
+        return np.asarray(self.values.any(axis=0))
 
 
 class BandedLU:

@@ -29,7 +29,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, Protocol, TypeAlias
+from typing import Generic, Literal, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -58,11 +58,11 @@ OVERSHOOT = 0.1
 SHORTEST_CORRECTED = 0.05
 """Shortest first step that is worth a second-order correction."""
 
-CONTRACTION, SUPERLINEAR = 0.2, 1.5
+CONTRACTION, SUPERLINEAR = 0.3, 1.5
 """The barrier falls to this share, or to this power of the gap, once its problem is solved
 to within ``CENTRED`` times the gap."""
 
-CENTRED = 10.0
+CENTRED = 3.0
 
 HALVINGS = 25
 """Of a step, before the search gives up."""
@@ -89,11 +89,21 @@ class Expansion(Protocol):
     Vectors are those of the full space, (N,).
     """
 
-    cost: float
-    budgets: Floats
-    local: Floats
-    gradient: Floats
-    budget_gradients: Floats  # (N, j)
+    @property
+    def cost(self) -> float:
+        """The cost."""
+
+    @property
+    def budgets(self) -> Floats:
+        """Values of the budgets, (j,)."""
+
+    @property
+    def gradient(self) -> Floats:
+        """Of the cost, (N,)."""
+
+    @property
+    def budget_gradients(self) -> Floats:
+        """Of the budgets, as columns, (N, j)."""
 
     def local_change(self, step: Floats) -> Floats:
         """Return the derivative of the local bounds along a step, (k,)."""
@@ -109,10 +119,15 @@ class System(Protocol):
         """Solve for columns of the full space, (N, r): reduce, solve, expand again."""
 
 
-class Program(Protocol):
+E = TypeVar("E", bound=Expansion)
+
+
+class Program(Protocol[E]):
     """What the method needs to know of a problem."""
 
-    bounds: Floats  # (m,)
+    @property
+    def bounds(self) -> Floats:
+        """Of the linear rows, (m,)."""
 
     def linear(self, x: Floats) -> Floats:
         """Return the linear rows' values, (m,)."""
@@ -128,7 +143,7 @@ class Program(Protocol):
 
     def expand(
         self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
-    ) -> Expansion:
+    ) -> E:
         """Evaluate with derivatives.
 
         Parameters
@@ -142,7 +157,7 @@ class Program(Protocol):
             Of the curvature part of the Hessian, 0 to 1.
         """
 
-    def system(self, expansion: Expansion, stiffness: Floats, shift: float) -> System | None:
+    def system(self, expansion: E, stiffness: Floats, shift: float) -> System | None:
         """Factorise the Hessian and ``rows' diag(stiffness) rows``; None if not convex."""
 
     def reduce(self, gradient: Floats) -> Floats:
@@ -166,9 +181,9 @@ class Options:
         Told the budgets' values at each iterate; ends the method where it returns True.
     """
 
-    gap: float = 1e-8
+    gap: float = 1e-7
     tolerance: float = 1e-7
-    start_gap: float = 1.0
+    start_gap: float = 3.0
     max_iterations: int = 200
     stop_early: Callable[[Floats], bool] | None = None
 
@@ -210,7 +225,7 @@ class Outcome:
 
 
 def minimise(
-    program: Program,
+    program: Program[E],
     start: Floats,
     options: Options | None = None,
     on_step: Callable[[Step], None] | None = None,
@@ -233,12 +248,12 @@ def minimise(
     return _Search(program, start, options or Options(), on_step).run()
 
 
-class _Search:
+class _Search(Generic[E]):
     """The state of a minimisation."""
 
     def __init__(
         self,
-        program: Program,
+        program: Program[E],
         start: Floats,
         options: Options,
         on_step: Callable[[Step], None] | None,
@@ -302,7 +317,7 @@ class _Search:
             steps=tuple(self.steps),
         )
 
-    def _linearise(self) -> tuple[Expansion, System | None]:
+    def _linearise(self) -> tuple[E, System | None]:
         """Expand at the iterate and factorise with the largest share that is convex."""
         m = self.m
         stiffness = self.dual / self.slack
@@ -325,7 +340,7 @@ class _Search:
         self.share = min(1.0, 2.0 * share) if share > 0.0 else 0.5**SHARE_HALVINGS
         return expansion, system
 
-    def _residual(self, expansion: Expansion) -> float:
+    def _residual(self, expansion: E) -> float:
         """Return the scaled violation of the first-order conditions."""
         program, m = self.program, self.m
         of_cost = program.reduce(expansion.gradient)
@@ -350,7 +365,7 @@ class _Search:
             gap = self.mu * total
             self.mu = max(min(CONTRACTION * gap, gap**SUPERLINEAR) / total, least)
 
-    def _force(self, expansion: Expansion) -> Floats:
+    def _force(self, expansion: E) -> Floats:
         """Return the gradient of the barrier problem, (N,)."""
         m, inverse = self.m, self.mu / self.slack
         force = expansion.gradient + self.program.linear_adjoint(inverse[:m] - inverse[m : 2 * m])
@@ -359,7 +374,7 @@ class _Search:
             force + expansion.budget_gradients @ (self.mu * self.weight / self.budget_slack)
         )
 
-    def _advance(self, expansion: Expansion, system: System) -> bool:
+    def _advance(self, expansion: E, system: System) -> bool:
         """Take one step; return whether one was found."""
         border = _Border(system, expansion.budget_gradients, self.budget_slack / self.budget_dual)
         force = self._force(expansion)
@@ -381,17 +396,15 @@ class _Search:
         )
         if not self._search(border, step, slope, budget_change, longest):
             return False
-        m = self.m
         self.dual = self.dual + dual_length * dual_step
         self.budget_dual = self.budget_dual + dual_length * budget_dual_step
         central = self.mu / self.slack
         self.dual = np.clip(self.dual, central / SPREAD, central * SPREAD)
         central = self.mu * self.weight / self.budget_slack
         self.budget_dual = np.clip(self.budget_dual, central / SPREAD, central * SPREAD)
-        assert m == self.m
         return True
 
-    def _slack_change(self, expansion: Expansion, step: Floats) -> Floats:
+    def _slack_change(self, expansion: E, step: Floats) -> Floats:
         rows = self.program.linear_change(step)
         return np.concatenate([-rows, rows, -expansion.local_change(step)])
 

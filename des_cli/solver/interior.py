@@ -16,7 +16,7 @@ pivots of an indefinite one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -25,7 +25,7 @@ from scipy.linalg import LinAlgError
 from des_cli.model.arrays import Floats
 from des_cli.model.solution import Iteration
 from des_cli.solver.filter import Filter, Trial
-from des_cli.solver.newton_system import Dynamics, NewtonSystem, transposed
+from des_cli.solver.newton_system import Border, Dynamics, NewtonSystem, transposed
 from des_cli.solver.program import Expansion, Program
 from des_cli.solver.slacks import Side, longest_step
 
@@ -48,6 +48,12 @@ SHORTEST_STEP = 1e-10
 SHARE_DECAY, LEAST_SHARE, SHARE_RECOVERY = 0.7, 0.05, 2.0
 # Shifts of the diagonal, relative to the problem's scale, tried after that.
 SHIFTS = (0.0, 1e-6, 1e-4, 1e-2, 1.0, 1e2)
+# A budget's barrier weighs as much as this share of all the local inequalities together:
+# with a weight of one the first steps would spend it to the last, and the rest creep
+# along its curved boundary.
+BUDGET_WEIGHT = 0.1
+# Multiplier that a budget starts with at the least.
+LEAST_PRICE = 1e-8
 # Errors within which a result that misses the tolerance may still be used.
 ACCEPTABLE = 1e-6
 
@@ -68,6 +74,8 @@ class Outcome:
         Of the dynamics.
     cost, optimality, infeasibility : float
     log : tuple of Iteration
+    prices : (s,) array
+        Multipliers of the budgets.
     """
 
     status: Ending
@@ -77,6 +85,7 @@ class Outcome:
     optimality: float
     infeasibility: float
     log: tuple[Iteration, ...]
+    prices: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
     def usable(self) -> bool:
@@ -91,6 +100,7 @@ def minimise(
     tolerance: float = 1e-9,
     max_iterations: int = 200,
     barrier: float = 1.0,
+    prices: Floats | None = None,
     first_number: int = 0,
     on_iteration: Report | None = None,
 ) -> Outcome:
@@ -107,12 +117,15 @@ def minimise(
     max_iterations : int
     barrier : float
         First barrier parameter, relative to the program's scale.
+    prices : (s,) array, optional
+        What the multipliers of the budgets are near to.
     first_number : int
         Number of the first line of the log.
     on_iteration : callable, optional
         Called with each line of the log.
     """
-    return _Method(program, x, tolerance, barrier).run(max_iterations, first_number, on_iteration)
+    method = _Method(program, x, tolerance, barrier, prices)
+    return method.run(max_iterations, first_number, on_iteration)
 
 
 @dataclass(frozen=True)
@@ -121,8 +134,9 @@ class _Local:
 
     expansion: Expansion
     defect: Floats
-    excess: list[Floats]  # two for each set of rows: upper, lower
-    rows: list[tuple[Floats, Floats | None]]  # Jacobians
+    excess: list[Floats]  # two for each set of rows, upper and lower; one for each budget
+    rows: list[tuple[Floats, ...]]  # Jacobians
+    budgets: list[Expansion]
     dynamics: tuple[Floats, Floats]
     movable: Dynamics
 
@@ -142,7 +156,14 @@ class _Step:
 class _Method:
     """The state of one minimisation."""
 
-    def __init__(self, program: Program, x: Floats, tolerance: float, barrier: float) -> None:
+    def __init__(
+        self,
+        program: Program,
+        x: Floats,
+        tolerance: float,
+        barrier: float,
+        prices: Floats | None,
+    ) -> None:
         self.program = program
         self.x = x.copy()
         self.n, self.width = x.shape
@@ -154,11 +175,19 @@ class _Method:
         self.least_mu = 0.1 * tolerance * self.unit
         self.share = 1.0
         self._linear: tuple[tuple[Floats, Floats], Dynamics] | None = None
-        self.sides: list[Side] = []
+        self.sides: list[Side] = []  # of the rows, and then of the budgets
         for rows in program.rows:
             value = rows.value(self.x)
             self.sides.append(Side.at(1.0, value, self.mu))
             self.sides.append(Side.at(-1.0, value, self.mu))
+        weight = max(1.0, BUDGET_WEIGHT * sum(side.slack.size for side in self.sides))
+        self.spending: list[Side] = []
+        for index, measure in enumerate(program.budgets):
+            value = np.array([measure.value(self.x)])
+            self.spending.append(Side.at(1.0, value, self.mu, weight))
+            if prices is not None:
+                self.spending[-1].dual = np.maximum(prices[index : index + 1], LEAST_PRICE)
+        self.sides += self.spending
         violation = _violation(program.defect(self.x), self._excess(self.x))
         self.filter = Filter(violation, self.unit)
 
@@ -176,7 +205,7 @@ class _Method:
             )
             if on_iteration is not None:
                 on_iteration(log[-1])
-            gap = max((_largest(s.slack * s.dual) for s in self.sides), default=0.0)
+            gap = max((_largest(side.product) for side in self.sides), default=0.0)
             if max(optimality, infeasibility) <= self.tolerance and gap <= 10 * self.least_mu:
                 status = "converged"
                 break
@@ -190,8 +219,10 @@ class _Method:
             step = taken
         if status != "converged" and max(optimality, infeasibility, gap / self.unit) <= ACCEPTABLE:
             status = "acceptable"
+        prices = np.array([float(side.dual[0]) for side in self.spending])
+        cost, lines = log[-1].cost, tuple(log)
         return Outcome(
-            status, self.x, self.multiplier, log[-1].cost, optimality, infeasibility, tuple(log)
+            status, self.x, self.multiplier, cost, optimality, infeasibility, lines, prices
         )
 
     # ------------------------------------------------------------------ at an iterate
@@ -201,6 +232,7 @@ class _Method:
             defect=self.program.defect(self.x),
             excess=self._excess(self.x),
             rows=[rows.jacobian(self.x) for rows in self.program.rows],
+            budgets=[measure.expand(self.x) for measure in self.program.budgets],
             dynamics=(dynamics := self.program.defect_jacobian(self.x)),
             movable=self._movable(dynamics),
         )
@@ -216,6 +248,8 @@ class _Method:
         for index, rows in enumerate(self.program.rows):
             value = rows.value(x)
             excess += [side.excess(value) for side in self.sides[2 * index : 2 * index + 2]]
+        for side, measure in zip(self.spending, self.program.budgets, strict=True):
+            excess.append(side.excess(np.array([measure.value(x)])))
         return excess
 
     def _errors(self, local: _Local) -> tuple[float, float]:
@@ -226,6 +260,8 @@ class _Method:
         gradient[1:] += _apply(ahead, self.multiplier)
         for index, jacobian in enumerate(local.rows):
             self._push(gradient, index, jacobian, self._net_dual(index))
+        for side, budget in zip(self.spending, local.budgets, strict=True):
+            gradient += float(side.dual[0]) * budget.gradient
         gradient[self.program.pinned] = 0.0
         optimality = _largest(gradient / self.program.weight[:, None]) / self.program.scale
         infeasibility = max([_largest(local.defect), *(_largest(e) for e in local.excess)])
@@ -235,21 +271,17 @@ class _Method:
         upper, lower = self.sides[2 * index : 2 * index + 2]
         return np.asarray(upper.dual - lower.dual)
 
-    def _push(
-        self, force: Floats, index: int, jacobian: tuple[Floats, Floats | None], dual: Floats
-    ) -> None:
+    def _push(self, force: Floats, index: int, jacobian: tuple[Floats, ...], dual: Floats) -> None:
         """Add the transposed Jacobian of one set of rows times multipliers to a force."""
         node = self.program.rows[index].node
-        at_node, at_next = jacobian
-        force[node] += _apply(at_node, dual)  # no sample stands in a set of rows twice
-        if at_next is not None:
-            force[node + 1] += _apply(at_next, dual)
+        for ahead, block in enumerate(jacobian):
+            force[node + ahead] += _apply(block, dual)  # no sample stands in a set of rows twice
 
     def _lower_barrier(self, error: float) -> None:
         """Lower the barrier for as long as its problem is solved well enough."""
         while self.sides and self.mu > self.least_mu:
             relative = self.mu / self.unit
-            off = max(_largest(s.slack * s.dual - self.mu) for s in self.sides)
+            off = max(_largest(side.product - self.mu) for side in self.sides)
             if max(error, off / self.unit) > BARRIER_MARGIN * relative:
                 return
             lower = min(BARRIER_FACTOR * relative, relative**BARRIER_POWER)
@@ -260,6 +292,7 @@ class _Method:
     def _advance(self, local: _Local) -> float | None:
         """Take one step; return its length, or None where none is acceptable."""
         convex, bend, across = self._blocks(local)
+        border = self._border(local)
         size = self.program.scale * float(self.program.weight.max())
         for share, shift in self._convexities():
             hessian = convex + share * bend if bend is not None else convex.copy()
@@ -268,7 +301,8 @@ class _Method:
                 hessian[:, diagonal, diagonal] += (
                     shift * self.program.scale * self.program.weight[:, None]
                 )
-            system = NewtonSystem(hessian, across, local.movable)
+            blocks = [each.copy() for each in across]
+            system = NewtonSystem(hessian, blocks, local.movable, border)
             if not system.is_convex(size):
                 continue
             try:
@@ -289,29 +323,38 @@ class _Method:
         for shift in SHIFTS:
             yield 0.0, shift
 
-    def _blocks(self, local: _Local) -> tuple[Floats, Floats | None, Floats | None]:
-        """Return the convex part of the blocks (k, k), what bends them, and blocks (k, k + 1).
+    def _blocks(self, local: _Local) -> tuple[Floats, Floats | None, list[Floats]]:
+        """Return the convex part of the blocks (k, k), what bends them, and blocks off them.
 
-        Slacks and their multipliers are eliminated; the dynamics are not in it.
+        Slacks and their multipliers are eliminated; the dynamics are not in it, nor
+        what couples all samples.
         """
-        hessian = local.expansion.hessian.copy()
-        bends = [local.expansion.bend, self.program.defect_curvature(self.x, self.multiplier)]
-        across = local.expansion.across
-        if across is not None or any(at_next is not None for _, at_next in local.rows):
-            across = np.zeros((self.n - 1, self.width, self.width)) if across is None else +across
-        for index, (rows, (at_node, at_next)) in enumerate(
-            zip(self.program.rows, local.rows, strict=True)
-        ):
+        whole = local.expansion
+        for side, budget in zip(self.spending, local.budgets, strict=True):
+            whole = whole.plus(float(side.dual[0]), budget)
+        hessian = whole.hessian.copy()
+        bends = [whole.bend, self.program.defect_curvature(self.x, self.multiplier)]
+        across = [] if whole.across is None else [whole.across.copy()]
+        for index, (rows, jacobian) in enumerate(zip(self.program.rows, local.rows, strict=True)):
             upper, lower = self.sides[2 * index : 2 * index + 2]
             stiffness = (upper.stiffness() + lower.stiffness())[:, :, None]
-            hessian[rows.node] += transposed(at_node * stiffness) @ at_node
-            if at_next is not None:
-                hessian[rows.node + 1] += transposed(at_next * stiffness) @ at_next
-                assert across is not None
-                across[rows.node] += transposed(at_node * stiffness) @ at_next
+            heavy = [transposed(block * stiffness) for block in jacobian]
+            while len(across) < len(jacobian) - 1:
+                across.append(np.zeros((self.n - 1 - len(across), self.width, self.width)))
+            for i, one in enumerate(heavy):
+                hessian[rows.node + i] += one @ jacobian[i]
+                for j in range(i + 1, len(jacobian)):
+                    across[j - i - 1][rows.node + i] += one @ jacobian[j]
             bends.append(rows.curvature(self.x, self._net_dual(index)))
         bending = [bend for bend in bends if bend is not None]
         return hessian, sum(bending[1:], start=bending[0]) if bending else None, across
+
+    def _border(self, local: _Local) -> Border | None:
+        """Return what the budgets' eliminated slacks add to the Hessian."""
+        if not self.spending:
+            return None
+        vectors = np.stack([budget.gradient for budget in local.budgets], axis=2)
+        return Border(vectors, np.array([float(s.stiffness()[0]) for s in self.spending]))
 
     def _force(self, local: _Local, excess: list[Floats]) -> Floats:
         """Return the gradient of the barrier problem, slacks eliminated, (n, 3 + m)."""
@@ -320,6 +363,9 @@ class _Method:
             pair = range(2 * index, 2 * index + 2)
             push = sum(self.sides[which].push(self.mu, excess[which]) for which in pair)
             self._push(force, index, jacobian, np.asarray(push))
+        first = 2 * len(self.program.rows)
+        for which, budget in enumerate(local.budgets, start=first):
+            force += float(self.sides[which].push(self.mu, excess[which])[0]) * budget.gradient
         return force
 
     def _search(self, local: _Local, system: NewtonSystem) -> float | None:
@@ -330,8 +376,8 @@ class _Method:
         """
         step = self._step(local, system, local.defect, local.excess)
         pairs = list(zip(self.sides, step.slacks, strict=True))
-        slope = float(np.sum(local.expansion.gradient * step.x)) - self.mu * sum(
-            float(np.sum(d / s.slack)) for s, d in pairs
+        slope = float(np.sum(local.expansion.gradient * step.x)) + self.mu * sum(
+            side.barrier_slope(move) for side, move in pairs
         )
         here = Trial(
             _violation(local.defect, local.excess), self._barrier_cost(local.expansion.cost)
@@ -400,20 +446,21 @@ class _Method:
     def _slack_moves(self, local: _Local, move: Floats, excess: list[Floats]) -> list[Floats]:
         """Return the step of every slack that belongs to a step of x."""
         moves: list[Floats] = []
-        for index, (rows, (at_node, at_next)) in enumerate(
-            zip(self.program.rows, local.rows, strict=True)
-        ):
-            change = (at_node @ move[rows.node, :, None])[:, :, 0]
-            if at_next is not None:
-                change = change + (at_next @ move[rows.node + 1, :, None])[:, :, 0]
+        for index, (rows, jacobian) in enumerate(zip(self.program.rows, local.rows, strict=True)):
+            change = sum(
+                (block @ move[rows.node + ahead, :, None])[:, :, 0]
+                for ahead, block in enumerate(jacobian)
+            )
             for which in (2 * index, 2 * index + 1):
-                moves.append(self.sides[which].slack_move(change, excess[which]))
+                moves.append(self.sides[which].slack_move(np.asarray(change), excess[which]))
+        for which, budget in enumerate(local.budgets, start=len(moves)):
+            change = np.array([np.sum(budget.gradient * move)])
+            moves.append(self.sides[which].slack_move(change, excess[which]))
         return moves
 
     def _barrier_cost(self, cost: float) -> float:
         """Return the cost of the barrier problem at the present slacks."""
-        barrier = sum(float(np.sum(np.log(side.slack))) for side in self.sides)
-        return float(cost - self.mu * barrier)
+        return float(cost + self.mu * sum(side.barrier() for side in self.sides))
 
 
 def _apply(jacobian: Floats, dual: Floats) -> Floats:

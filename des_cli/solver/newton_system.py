@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -45,34 +47,60 @@ class Dynamics:
         return at, turned @ self.left
 
 
+@dataclass(frozen=True)
+class Border:
+    """Rank-one terms of a Hessian, ``sum_i stiffness_i a_i a_i'``, that couple all samples.
+
+    Parameters
+    ----------
+    vectors : (n, w, s) array
+    stiffness : (s,) array
+        Positive.
+    """
+
+    vectors: Floats
+    stiffness: Floats
+
+
 class NewtonSystem:
     """Symmetric blocks of a Hessian over a linearised dynamics.
 
     The unknowns of a sample stand together with the multiplier of the interval
-    that it begins: [x_k, lambda_k].
+    that it begins: [x_k, lambda_k]. Terms that couple all samples border the band:
+    they are solved for by the formula of Sherman, Morrison and Woodbury, for one more
+    right-hand side each.
 
     Parameters
     ----------
     hessian : (n, w, w) array
         Blocks (k, k); the system takes them over.
-    across : (n - 1, w, w) array, optional
-        Blocks (k, k + 1); it takes them over too.
+    across : sequence of (n - 1 or n - 2, w, w) arrays
+        Blocks (k, k + 1) and, if any, (k, k + 2); it takes them over too.
     dynamics : Dynamics
+    border : Border, optional
     """
 
-    def __init__(self, hessian: Floats, across: Floats | None, dynamics: Dynamics) -> None:
+    def __init__(
+        self,
+        hessian: Floats,
+        across: Sequence[Floats],
+        dynamics: Dynamics,
+        border: Border | None = None,
+    ) -> None:
         self.dynamics, self._hessian, self._across = dynamics, hessian, across
         still = dynamics.pinned
         k = np.flatnonzero(np.any(still, axis=1))
         ends = np.arange(hessian.shape[1])
         hessian[k] *= (~still[k])[:, :, None] & (~still[k])[:, None, :]
         hessian[k[:, None], ends, ends] += still[k]
-        if across is not None and len(k):
-            across *= (~still[:-1])[:, :, None] & (~still[1:])[:, None, :]
+        for off, blocks in enumerate(across, start=1):
+            blocks *= (~still[:-off])[:, :, None] & (~still[off:])[:, None, :]
+        self._border = border
         self._lu: BandedLU | None = None
+        self._woodbury: tuple[Floats, Floats, Floats] | None = None
 
     def is_convex(self, size: float) -> bool:
-        """Return whether the Hessian is positive definite on the linearised dynamics.
+        """Return whether the banded Hessian is positive definite on the linearised dynamics.
 
         Parameters
         ----------
@@ -82,11 +110,10 @@ class NewtonSystem:
         n, width, _ = self._hessian.shape
         weight = DYNAMICS_WEIGHT * n**2 * size
         at, behind = self.dynamics.squared
-        below = weight * behind
-        if self._across is not None:
-            below += transposed(self._across)
-        parts = (Part(self._hessian + weight * at), Part(below, ahead=-1))
-        return is_positive_definite(n, width, parts)
+        below = [transposed(blocks) for blocks in self._across] or [np.zeros_like(behind)]
+        below[0] = below[0] + weight * behind
+        parts = [Part(values, ahead=-off) for off, values in enumerate(below, start=1)]
+        return is_positive_definite(n, width, [Part(self._hessian + weight * at), *parts])
 
     def solve(self, force: Floats, defect: Floats) -> tuple[Floats, Floats]:
         """Return the step in x, (n, w), and the new multipliers, (n - 1, 3).
@@ -97,14 +124,34 @@ class NewtonSystem:
             If the system is singular.
         """
         n, width, _ = self._hessian.shape
+        right = np.zeros((n, width + 3))
+        right[:, :width] = -self._moving(force)
+        right[:-1, width:] = -defect
         if self._lu is None:
             self._lu = self._factorise()
-        right = np.zeros((n, width + 3))
-        right[:, :width] = -force
-        right[:, :width][self.dynamics.pinned] = 0.0
-        right[:-1, width:] = -defect
         solution = self._lu.solve(right)
+        if self._border is not None:
+            solution = self._correct(solution, self._lu, self._border)
         return solution[:, :width], solution[:-1, width:]
+
+    def _moving(self, force: Floats) -> Floats:
+        """Return a force on x, (n, w), without what acts on pinned unknowns."""
+        return np.where(self.dynamics.pinned, 0.0, force)
+
+    def _correct(self, solution: Floats, lu: BandedLU, border: Border) -> Floats:
+        """Return a solution of the band with the border taken in."""
+        n, block = solution.shape
+        if self._woodbury is None:
+            count = len(border.stiffness)
+            right = np.zeros((n, block, count))
+            for i in range(count):
+                right[:, :-3, i] = self._moving(border.vectors[:, :, i])
+            answers = lu.solve(right).reshape(n * block, count)
+            rows = right.reshape(n * block, count)
+            self._woodbury = rows, answers, np.diag(1.0 / border.stiffness) + rows.T @ answers
+        rows, answers, small = self._woodbury
+        share = np.linalg.solve(small, rows.T @ solution.ravel())
+        return np.asarray(solution - (answers @ share).reshape(n, block))
 
     def _factorise(self) -> BandedLU:
         n, width, _ = self._hessian.shape
@@ -117,8 +164,8 @@ class NewtonSystem:
             Part(ahead, row=width, ahead=1),
             Part(transposed(ahead), column=width, ahead=-1),
         ]
-        if self._across is not None:
-            parts += [Part(self._across, ahead=1), Part(transposed(self._across), ahead=-1)]
+        for off, blocks in enumerate(self._across, start=1):
+            parts += [Part(blocks, ahead=off), Part(transposed(blocks), ahead=-off)]
         return BandedLU(n, width + 3, parts)
 
 

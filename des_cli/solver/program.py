@@ -54,7 +54,7 @@ class Rows(ABC):
     ----------
     node : (q,) int array
         The sample k that each group of inequalities belongs to; it may also
-        depend on sample k + 1.
+        depend on samples k + 1 and k + 2.
     """
 
     def __init__(self, node: Indices) -> None:
@@ -65,20 +65,36 @@ class Rows(ABC):
         """Return the values, (q, r)."""
 
     @abstractmethod
-    def jacobian(self, x: Floats) -> tuple[Floats, Floats | None]:
-        """Return d value / d x_k and, or None, d value / d x_{k+1}; (q, r, 3 + m)."""
+    def jacobian(self, x: Floats) -> tuple[Floats, ...]:
+        """Return d value / d x_k, and as far as it reaches d x_{k+1}, d x_{k+2}; (q, r, 3 + m)."""
 
     def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
         """Return multiplier' d2 value / dx dx, blocks (k, k), (n, 3 + m, 3 + m), or None."""
         return None
 
 
+class Measure(ABC):
+    """A measure of a whole iterate with a budget: at most one."""
+
+    @abstractmethod
+    def value(self, x: Floats) -> float:
+        """Return the value of an iterate."""
+
+    @abstractmethod
+    def expand(self, x: Floats) -> Expansion:
+        """Expand the value to second order; the Hessian may be a Gauss-Newton one."""
+
+
 class Program(Protocol):
-    """A cost at samples, dynamics between neighbours, and local inequalities."""
+    """A cost at samples, dynamics between neighbours, local inequalities, and budgets."""
 
     @property
     def rows(self) -> Sequence[Rows]:
-        """The inequalities."""
+        """The local inequalities."""
+
+    @property
+    def budgets(self) -> Sequence[Measure]:
+        """The measures that stay at or below one."""
 
     @property
     def pinned(self) -> Flags:

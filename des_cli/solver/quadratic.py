@@ -98,45 +98,30 @@ class _Search:
 
     def run(self) -> QuadraticOutcome:
         bounds = np.tile(self.rows.bounds, 2)
-        true = self._slack()
-        if np.all(true > 0.0):
+        slack = self._slack()
+        if np.all(slack > 0.0):
             return QuadraticOutcome(self.x, True, 0.0, 0)
-        slack = np.maximum(true, ROOM * bounds)
-        mu = 1e-2 * self.size / len(slack)
-        dual = mu / slack
-        m = len(self.rows.bounds)
-        off = 1.0
-        for number in range(1, MAX_ITERATIONS + 1):
-            gradient = self.hessian.times(self.x) - self.linear
-            force = gradient + self.rows.adjoint(dual[:m] - dual[m:])
-            missing = self._slack() - slack
-            gap = float(slack @ dual)
-            off = float(np.max(np.abs(missing) / bounds, initial=0.0))
-            residual = float(np.max(np.abs(self.ends.reduce(force)), initial=0.0)) / self.unit
-            if off < FEASIBLE and residual < OPTIMAL and gap < OPTIMAL * self.size:
+        slack = np.maximum(slack, ROOM * bounds)
+        dual = 1e-2 * self.size / len(slack) / slack
+        iterations = 0
+        while iterations < MAX_ITERATIONS:
+            local = _Local(self, slack, dual)
+            off = float(np.max(np.abs(local.missing) / bounds, initial=0.0))
+            if off < FEASIBLE and local.residual < OPTIMAL and local.gap < OPTIMAL * self.size:
                 break
-            stiffness = dual / slack
-            factor = self._factorise(stiffness[:m] + stiffness[m:])
-
-            def step(target: Floats) -> tuple[Floats, Floats, Floats]:
-                push = target / slack - stiffness * missing
-                move = self._solve(factor, -gradient - self.rows.adjoint(push[:m] - push[m:]))
-                rows = self.rows.change(move)
-                change = missing + np.concatenate([-rows, rows])
-                return move, change, target / slack - dual - stiffness * change
-
-            _, change, dual_change = step(np.zeros_like(slack))
+            iterations += 1
+            _, change, dual_change = local.step(np.zeros_like(slack))
             ahead = (slack + _longest(slack, change) * change) @ (
                 dual + _longest(dual, dual_change) * dual_change
             )
-            centring = min(1.0, (ahead / gap) ** 3) * gap / len(slack)
-            move, change, dual_change = step(centring - change * dual_change)
+            centring = min(1.0, float(ahead / local.gap) ** 3) * local.gap / len(slack)
+            move, change, dual_change = local.step(centring - change * dual_change)
             length = min(1.0, FRACTION * _longest(slack, change))
             self.x = self.x + length * move
             slack = slack + length * change
             dual = dual + min(1.0, FRACTION * _longest(dual, dual_change)) * dual_change
         worst = float(np.max(-self._slack() / bounds, initial=0.0))
-        return QuadraticOutcome(self.x, worst <= FEASIBLE, worst, number)
+        return QuadraticOutcome(self.x, worst <= FEASIBLE, worst, iterations)
 
     def _slack(self) -> Floats:
         value = self.rows.value(self.x)
@@ -160,6 +145,37 @@ class _Search:
         reduced = self.ends.reduce(right)
         solved = factor.solve(reduced.reshape(-1, 1))[:, 0]
         return self.ends.full(solved.reshape(right.shape))
+
+
+class _Local:
+    """The system of one iterate, factorised.
+
+    ``missing`` is what the slacks lack to the true distances from the limits.
+    """
+
+    def __init__(self, search: _Search, slack: Floats, dual: Floats) -> None:
+        self._search, self._slack, self._dual = search, slack, dual
+        self._m = m = len(search.rows.bounds)
+        self._gradient = search.hessian.times(search.x) - search.linear
+        self.missing = search._slack() - slack
+        self.gap = float(slack @ dual)
+        force = self._gradient + search.rows.adjoint(dual[:m] - dual[m:])
+        worst = float(np.max(np.abs(search.ends.reduce(force)), initial=0.0))
+        self.residual = worst / search.unit
+        self._stiffness = dual / slack
+        self._factor: BandCholesky | None = None
+
+    def step(self, target: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the step towards slack times multiplier at a target: x, slacks, multipliers."""
+        search, m = self._search, self._m
+        if self._factor is None:
+            self._factor = search._factorise(self._stiffness[:m] + self._stiffness[m:])
+        push = target / self._slack - self._stiffness * self.missing
+        force = self._gradient + search.rows.adjoint(push[:m] - push[m:])
+        move = search._solve(self._factor, -force)
+        rows = search.rows.change(move)
+        change = self.missing + np.concatenate([-rows, rows])
+        return move, change, target / self._slack - self._dual - self._stiffness * change
 
 
 def _longest(values: Floats, change: Floats) -> float:

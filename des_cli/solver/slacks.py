@@ -16,7 +16,7 @@ FIRST_SLACK = 1e-2
 class Side:
     """Slack s and multiplier z of one side of the bounds of one set of rows.
 
-    ``sign * value + s = 1`` with ``s z = mu`` on the central path.
+    ``sign * value + s = 1`` with ``s z = weight mu`` on the central path.
 
     Parameters
     ----------
@@ -24,17 +24,33 @@ class Side:
         +1 for the upper bound, -1 for the lower one.
     slack, dual : (q, r) array
         Positive.
+    weight : float
+        Of its barrier.
     """
 
     sign: float
     slack: Floats
     dual: Floats
+    weight: float = 1.0
 
     @classmethod
-    def at(cls, sign: float, value: Floats, mu: float) -> Side:
+    def at(cls, sign: float, value: Floats, mu: float, weight: float = 1.0) -> Side:
         """Begin at a value, inside the bound."""
         slack = np.maximum(1.0 - sign * value, FIRST_SLACK)
-        return cls(sign, slack, mu / slack)
+        return cls(sign, slack, weight * mu / slack, weight)
+
+    @property
+    def product(self) -> Floats:
+        """S z over the weight: mu on the central path."""
+        return self.slack * self.dual / self.weight
+
+    def barrier(self) -> float:
+        """Return what the barrier adds to the cost, over mu."""
+        return -self.weight * float(np.sum(np.log(self.slack)))
+
+    def barrier_slope(self, slack_move: Floats) -> float:
+        """Return the derivative of ``barrier`` along a step of the slack."""
+        return -self.weight * float(np.sum(slack_move / self.slack))
 
     def excess(self, value: Floats) -> Floats:
         """Return how far value and slack together miss the bound."""
@@ -46,7 +62,7 @@ class Side:
 
     def push(self, mu: float, excess: Floats) -> Floats:
         """Return the signed multiplier after a step that leaves the value alone."""
-        return self.sign * (mu + self.dual * excess) / self.slack
+        return self.sign * (self.weight * mu + self.dual * excess) / self.slack
 
     def slack_move(self, change: Floats, excess: Floats) -> Floats:
         """Return the slack's step for a change of the value."""
@@ -54,7 +70,7 @@ class Side:
 
     def dual_move(self, mu: float, slack_move: Floats) -> Floats:
         """Return the multiplier's step for a step of the slack."""
-        return (mu - self.dual * slack_move) / self.slack - self.dual
+        return (self.weight * mu - self.dual * slack_move) / self.slack - self.dual
 
 
 def longest_step(values: Floats, moves: Floats, fraction: float) -> float:

@@ -67,12 +67,12 @@ class SplineGrid:
     @cached_property
     def knots(self) -> Floats:
         """Times of the knots, (K + 1,) [s]."""
-        return self.start + self.step * np.arange(self.intervals + 1)
+        return np.asarray(self.start + self.step * np.arange(self.intervals + 1.0))
 
     @property
     def greville(self) -> Floats:
         """The time that each control point belongs to, (n,): a straight line's own values."""
-        return self.start + self.step * (np.arange(self.points) - 1.0)
+        return np.asarray(self.start + self.step * (np.arange(self.points) - 1.0))
 
     def basis(self, u: Floats, order: int) -> Floats:
         """Return the basis, or a derivative of it in time, at fractions of an interval.

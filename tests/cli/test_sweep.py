@@ -75,6 +75,24 @@ def test_weights_give_the_known_optima(by_weight: Rows) -> None:
     assert {row["status"] for row in scalar} == {"converged"}
 
 
+def test_every_point_has_the_felt_price(by_weight: Rows) -> None:
+    # An independent study (CasADi, 4-point Gauss) has 0.462 and 0.539 before any reduction;
+    # the grid of 0.05 s holds the acceleration over each interval.
+    stem = "seat_angular_acceleration"
+    before = {"rms": 0.462, "peak": 0.539}
+    for kind, size in before.items():
+        sizes = column(by_weight, f"{stem}_{kind}_before_rad_s2")
+        assert sizes == pytest.approx([size] * len(by_weight), abs=3e-3)
+    slowed = curve(by_weight, "constant-p")
+    # Slowed by p everywhere, c falls with p squared and the rest with p: the whole lies between.
+    for row, p in zip(slowed, CONSTANT_FACTORS, strict=True):
+        assert p**2 < float(row[f"{stem}_rms_rad_s2"]) / 0.462 < 1.0
+        off = float(row[f"{stem}_rms_error_rad_s2"])
+        assert off >= 0.462 - float(row[f"{stem}_rms_rad_s2"]) - 2e-3  # the triangle's inequality
+    errors = column(slowed, f"{stem}_rms_error_rad_s2")
+    assert errors == sorted(errors)
+
+
 def test_the_study_is_there_for_each_weight(by_weight: Rows) -> None:
     # Its single sweep on this profile: 13.5, 63.9 and 11.4 %.
     study = curve(by_weight, "report-sweep")
@@ -394,11 +412,17 @@ POINT = TradePoint(
     joint_deviation_relative=0.0499,
     seat_rate_deviation_relative=0.2,
     seat_g_rms_error_g=0.3,
+    seat_angular_acceleration_rms_error_rad_s2=0.143,
+    seat_angular_acceleration_rms_before_rad_s2=0.462,
+    seat_angular_acceleration_rms_rad_s2=0.447,
+    seat_angular_acceleration_peak_before_rad_s2=0.539,
+    seat_angular_acceleration_peak_rad_s2=0.561,
     attitude_error_max_deg=20.0,
     cost=0.1,
     iterations=7,
     limits_ok=True,
 )
+TURNING = ("α error", "α rms", "α peak")
 GONE = TradePoint("optimum", "scalar", "r2", 1.0, "iteration-limit", message="too few steps")
 
 
@@ -414,6 +438,15 @@ def test_text_is_aligned_and_says_why_there_is_nothing() -> None:
         ["5.0", "%"],
     ]
     assert second[: ends[0]].endswith("not known")
+    assert "α at the seat [rad/s²], before 0.462 rms and 0.539 peak" in lines[1]
+    assert [first[: heads.index(word) + len(word)].split()[-1] for word in TURNING] == [
+        "0.143",
+        "0.447",
+        "0.561",
+    ]
+    assert point_line(POINT).endswith(
+        "50.0 % less at joints 5.0 %, seat rate 20.0 %, α 0.447 rad/s² rms"
+    )
     assert lines[-1].endswith("1  iteration-limit: too few steps")
     assert point_line(GONE) == "scalar, r2 1: iteration-limit: too few steps"
 

@@ -45,7 +45,7 @@ def test_everything_reads_back(tmp_path: Path, synthetic_run: MakeRun) -> None:
     written = write_run(run, folder)
     assert written[-1] == folder / "manifest.json"
     assert sorted(str(path.relative_to(folder)) for path in written) == sorted(tree(folder))
-    assert len(list((folder / "plots").glob("*.png"))) == 7
+    assert len(list((folder / "plots").glob("*.png"))) == 8
     found = read_run(folder)
     assert found.name == "cobra"
     assert found.metrics == run.metrics

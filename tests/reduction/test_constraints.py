@@ -39,11 +39,9 @@ def test_jacobians_and_curvatures(grid, x):
 
         def pull_back(at, rows=rows, multiplier=multiplier):
             """The gradient of multiplier' value."""
-            at_node, at_next = rows.jacobian(at)
             force = np.zeros_like(at)
-            np.add.at(force, rows.node, (multiplier[:, None, :] @ at_node)[:, 0])
-            if at_next is not None:
-                np.add.at(force, rows.node + 1, (multiplier[:, None, :] @ at_next)[:, 0])
+            for ahead, block in enumerate(rows.jacobian(at)):
+                np.add.at(force, rows.node + ahead, (multiplier[:, None, :] @ block)[:, 0])
             return force
 
         slope = np.sum(along(rows.value, x, move) * multiplier)

@@ -13,6 +13,7 @@ class Program:
     """1/2 int |u - goal|^2 over unit time; the states stand still unless told otherwise."""
 
     rows = ()
+    budgets = ()
     scale = 1.0
     goal = 0.0
 
@@ -115,7 +116,7 @@ class Position(Rows):
         return x[:, :1] / self.bound
 
     def jacobian(self, x):
-        return np.tile(np.eye(4)[:1] / self.bound, (len(x), 1, 1)), None
+        return (np.tile(np.eye(4)[:1] / self.bound, (len(x), 1, 1)),)
 
 
 class Disc(Rows):
@@ -130,7 +131,7 @@ class Disc(Rows):
     def jacobian(self, x):
         jacobian = np.zeros((len(x), 1, 5))
         jacobian[:, 0, 3:] = 2.0 * x[:, 3:]
-        return jacobian, None
+        return (jacobian,)
 
     def curvature(self, x, multiplier):
         curvature = np.zeros((len(x), 5, 5))
