@@ -303,9 +303,7 @@ class SeatForms:
         )
         gravity, beyond = (_mapped(vector, t) for t in (self.gravity, self.gravity_beyond))
         cab = twist @ self.cab
-        return SeatForms(
-            arm, arm_beyond, fork, fork_beyond, cab, gravity, beyond, self.vertical
-        )
+        return SeatForms(arm, arm_beyond, fork, fork_beyond, cab, gravity, beyond, self.vertical)
 
 
 @lru_cache(maxsize=64)

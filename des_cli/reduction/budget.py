@@ -111,4 +111,7 @@ def _spent(grid: Transcription, budgets: Sequence[Budget], best: Outcome) -> str
         else:
             square = next(measures).value(best.x)
         shares.append(f"{np.sqrt(square):.2%} of the budget on {METRICS[budget.metric].key}")
-    return f"{', '.join(shares)} {'is' if len(shares) == 1 else 'are'} spent"
+    sentence = f"{', '.join(shares)} {'is' if len(shares) == 1 else 'are'} spent"
+    if not best.usable and any(measure.value(grid.desired) > 1.0 for measure in grid.budgets):
+        sentence += "; the nearest motion inside the limits overspends already: allow more"
+    return sentence

@@ -129,6 +129,7 @@ class MotionProgram:
             self.ground.gather(problem.base, *span) if problem.ground else np.zeros((0, 0))
             for span in self.chunks
         ]
+        self._last: tuple[Floats, list[SeatMotion]] | None = None
         self.bounds = problem.rows.bounds
         self.free_angles = problem.seat.count if problem.seat else 0
         self._per_jerk = np.broadcast_to(
@@ -184,8 +185,9 @@ class MotionProgram:
         forms, _ = self._forms(x)
         cost, budgets = 0.0, np.zeros(len(problem.budgets))
         local: list[list[Floats]] = [[] for _ in problem.local]
+        self._last = (x, seats := self._seats(x, forms))
         for chunk, (first, last) in enumerate(self.chunks):
-            seat = forms.at(self._base[chunk] + self.windows.gather(control, first, last))
+            seat = seats[chunk]
             at = slice(POINTS * first, POINTS * last)
             for term in problem.cost:
                 cost += _square(term.residual(seat, at))
@@ -214,8 +216,12 @@ class MotionProgram:
         total = MotionExpansion.zero(self, len(problem.budgets))
         total.band.data += self._smooth.data
         found: list[list[Floats]] = [[] for _ in problem.local]
+        # a line search has evaluated what it accepts
+        known = self._last is not None and np.array_equal(self._last[0], x)
+        seats = self._last[1] if self._last and known else self._seats(x, forms)
+        self._last = None
         for chunk, (first, last) in enumerate(self.chunks):
-            seat = forms.at(self._base[chunk] + self.windows.gather(control, first, last))
+            seat = seats[chunk]
             local_at = _Chunk(self, total, seat, turns, share, first, last)
             for term in problem.cost:
                 total.cost += local_at.take(term, 1.0, total.gradient)
@@ -280,6 +286,14 @@ class MotionProgram:
         if self.problem.seat is None:
             return self.problem.forms, ()
         return self.problem.seat.at(self.seat_angles(x))
+
+    def _seats(self, x: Floats, forms: SeatForms) -> list[SeatMotion]:
+        """Return the seat's motion on every chunk."""
+        control = self.control(x)
+        return [
+            forms.at(base + self.windows.gather(control, *span))
+            for span, base in zip(self.chunks, self._base, strict=True)
+        ]
 
     def _angles_of(self, chunk: int, control: Floats) -> Floats:
         """Return the joint angles at a chunk's points, if a bound needs them."""

@@ -9,6 +9,7 @@ gradients and a band by the control points through constant matrices.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -45,10 +46,11 @@ class Windows:
             local[k, :, :, joint] = weights[order]
         self._local = local.reshape(self.count * POINTS, WINDOW)
         self.pairs = [(k, n) for k in range(self.count) for n in range(k, self.count)]
-        self._to_band = self._pair_matrix(local.reshape(self.count, POINTS, WINDOW))
 
-    def _pair_matrix(self, local: Floats) -> Floats:
-        """Return what each pair of variables adds to the band, (pairs * points, 4 * 36)."""
+    @cached_property
+    def _to_band(self) -> Floats:
+        """What each pair of variables adds to the band, (pairs * points, 4 * 36)."""
+        local = self._local.reshape(self.count, POINTS, WINDOW)
         matrix = np.zeros((len(self.pairs), POINTS, ORDER, JOINTS, WINDOW))
         for index, (k, n) in enumerate(self.pairs):
             for point in range(POINTS):

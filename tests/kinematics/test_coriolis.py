@@ -7,6 +7,7 @@ from des_cli.kinematics.chain import chain_of, seat_rotation
 from des_cli.kinematics.coriolis import (
     angular_acceleration_split,
     coriolis,
+    coriolis_curvature,
     coriolis_derivatives,
     coriolis_pairs,
     coriolis_pairs_gradient,
@@ -139,3 +140,24 @@ def test_leading_dimensions_and_broadcasting(case, rng, axes, shape):
         last = coriolis_derivatives(case.chain, angles.reshape(-1, 3)[-1], rates, axes)
         np.testing.assert_allclose(c.reshape(-1, 3)[-1], last[0], rtol=0, atol=1e-13)
         np.testing.assert_allclose(dc_dangle.reshape(-1, 3, 3)[-1], last[1], rtol=0, atol=1e-13)
+
+
+@AXES
+def test_curvature(case, step, rng, axes):
+    """Against the complex step of the first derivatives; more samples than a block."""
+    n = BLOCK + 3
+    angles, rates, weight = rng.uniform(-3.0, 3.0, (3, n, 3))
+    found = coriolis_curvature(case.chain, angles, rates, weight, axes)
+    for k in (0, 5, n - 1):
+
+        def slopes(theta, speed, k=k):
+            _, by_angle, by_rate = coriolis_derivatives(case.chain, theta, speed, axes)
+            return weight[k] @ by_angle, weight[k] @ by_rate
+
+        expected = (
+            step(lambda x, k=k: slopes(x, rates[k])[0], angles[k]),
+            step(lambda x, k=k: slopes(x, rates[k])[1], angles[k]),
+            step(lambda x, k=k: slopes(angles[k], x)[1], rates[k]),
+        )
+        for block, exact in zip(found, expected, strict=True):
+            np.testing.assert_allclose(block[k], exact, rtol=0, atol=1e-12)

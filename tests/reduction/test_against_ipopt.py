@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 import pytest
 
 from des_cli.model.machines import DES
+from des_cli.model.metric import Budget
+from des_cli.reduction.budget import ROOM, pose_budget, spend_budgets
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.limits import find_violations
+from des_cli.reduction.search import Search
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.interior import minimise
 
@@ -34,7 +39,11 @@ def ipopt(closed_coriolis):
             for name in ("rate", "acceleration", "angle")
         ]
         change = (rate_end - rate_start) / ca.repmat(ca.DM(step).T, 3, 1)
+        jerk = np.array([limit.jerk for limit in machine.limits])
+        apart = ca.repmat(ca.DM(0.5 * (step[1:] + step[:-1])).T, 3, 1)
+        turns = (change[:, 1:] - change[:, :-1]) / apart / jerk
         return [
+            *([ca.vec(turns)] if np.all(np.isfinite(jerk)) else []),
             *(ca.vec(rate / bounds[0]) for rate in (rate_start, rate_end[:, -1])),
             ca.vec(change / bounds[1]),
             ca.vec(theta[1:, :] / bounds[2][1:]),
@@ -53,7 +62,7 @@ def ipopt(closed_coriolis):
         d1, d2, d3 = rate.T
         return ca.DM([c1 * d2 - s1 * c2 * d3, -s1 * d2 - c1 * c2 * d3, -d1 - s2 * d3])
 
-    def solve(problem, rule="trapezoid", near=None):
+    def solve(problem, rule="trapezoid", near=None, joints=None):
         desired, m = problem.desired, problem.controls
         n, step = len(desired.t), desired.step
         across = ca.DM(step).T
@@ -98,6 +107,10 @@ def ipopt(closed_coriolis):
         bounded = ca.DM(0, 1)
         if problem.machine is not None:
             bounded = ca.vertcat(*limits_of(problem.machine, *sides, theta, step))
+        if joints is not None:  # a budget on ||theta - Theta|| / ||Theta||
+            ends = np.append(0.0, step) + np.append(step, 0.0)
+            off = ca.dot(ca.DM(np.tile(ends, (3, 1))), (theta - wanted) ** 2)
+            bounded = ca.vertcat(bounded, off / (joints**2 * float(np.sum(ends * wanted**2))))
         unknowns = ca.vertcat(ca.vec(theta), ca.vec(u))
         nlp = {"x": unknowns, "f": cost, "g": ca.vertcat(equal, bounded)}
         solver = ca.nlpsol("solver", "ipopt", nlp, OPTIONS if near is None else OPTIONS | NEAR)
@@ -227,3 +240,16 @@ def test_limits_that_bind_cost_something(executable, pose, solve_problem):
     inside = solve_problem(pose(motion, 0.03, **weights, machine=DES))
     assert find_violations(DES, free.modified, "modified")
     assert inside.cost > free.cost * (1.0 + 1e-4)
+
+
+@pytest.mark.parametrize("jerk", [np.inf, 4.0])
+@pytest.mark.parametrize(("axes", "r1"), [("seat", (2, 2, 2)), ("report", (0, 2, 0))])
+def test_a_budget_inside_the_limits(ipopt, executable, pose, axes, r1, jerk):
+    limits = tuple(replace(limit, jerk=jerk * limit.acceleration) for limit in DES.limits)
+    machine = replace(DES, limits=limits)
+    posed = pose_budget(pose(executable(100), axes=axes, r1=r1, machine=machine))
+    budget = Budget("joint_deviation_relative", 0.05)
+    solution = spend_budgets(posed, [budget], Search(500))
+    assert solution.converged
+    cost, _ = ipopt(posed, joints=0.05 * (1.0 - ROOM))
+    assert solution.cost == pytest.approx(cost, rel=1e-7)

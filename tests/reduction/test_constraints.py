@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from des_cli.kinematics.chain import seat_rotation
 from des_cli.model.machines import DES
+from des_cli.reduction.attitude_rows import AttitudeRows
 from des_cli.reduction.constraints import MARGIN
 from des_cli.reduction.transcription import Transcription
 
@@ -13,7 +17,9 @@ from des_cli.reduction.transcription import Transcription
 @pytest.fixture(params=["desired", "adapted"])
 def grid(request, wave, pose):
     motion = wave([[0.5, 0.2, 0.1], [0.2, 0.3, 0.1], [0.2, -0.2, 0.15]], intervals=12)
-    problem = pose(motion, control="per-joint", jacobian=request.param, machine=DES)
+    limits = (replace(DES.limits[0], jerk=np.inf), *(replace(x, jerk=4.0) for x in DES.limits[1:]))
+    machine = replace(DES, limits=limits)
+    problem = pose(motion, control="per-joint", jacobian=request.param, machine=machine)
     return Transcription(problem)
 
 
@@ -33,8 +39,9 @@ def along(function, x, move, h=1e-3):
 
 def test_jacobians_and_curvatures(grid, x):
     rng = np.random.default_rng(5)
-    assert len(grid.rows) == 3
-    for rows in grid.rows:
+    attitude = AttitudeRows(grid.problem.chain, grid.problem.desired.angle, 20.0)
+    assert len(grid.rows) == 4
+    for rows in (*grid.rows, attitude):
         move, multiplier = rng.normal(size=x.shape), rng.normal(size=rows.value(x).shape)
 
         def pull_back(at, rows=rows, multiplier=multiplier):
@@ -62,6 +69,7 @@ def test_values_are_shares_of_the_limits(grid, x):
         at_samples / rate,
         (motion.rate_end - motion.rate_start) / motion.step[:, None] / acceleration,
         motion.angle[:, 1:] / angle[1:],  # the arm turns endlessly
+        motion.jerk[:, 1:] / 4.0,  # and has no limit on its jerk
     ]
     for rows, values in zip(grid.rows, expected, strict=True):
         found = rows.value(x)
@@ -70,9 +78,23 @@ def test_values_are_shares_of_the_limits(grid, x):
 
 
 def test_an_angle_leaves_room_for_the_parabola_between_samples(grid):
-    *_, angles = grid.rows
+    angles = grid.rows[2]
     x = np.zeros_like(grid.desired)
     step = grid.problem.desired.step[0]
     bulge = np.array([limit.acceleration for limit in DES.limits[1:]]) * step**2 / 8.0
     x[:, 1:3] = 2.0 * np.pi - bulge
     np.testing.assert_allclose(angles.value(x), 1.0 / (1.0 - MARGIN), atol=1e-7)
+
+
+def test_an_attitude_reaches_its_bound_at_the_angle_between_the_seats(grid, x):
+    chain, target = grid.problem.chain, grid.problem.desired.angle
+    made, wanted = (seat_rotation(chain, each) for each in (x[:, :3], target))
+    cosine = 0.5 * (np.einsum("kij,kij->k", made, wanted) - 1.0)
+    angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    k = int(np.argmax(angle))
+    value = AttitudeRows(chain, target, angle[k]).value(x)[:, 0]
+    assert np.argmax(value) == k
+    assert value[k] == pytest.approx(1.0, rel=1e-9)
+    np.testing.assert_allclose(
+        value, (np.sin(np.radians(angle / 2)) / np.sin(np.radians(angle[k] / 2))) ** 2, atol=1e-9
+    )

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy.optimize
 
 from des_cli.solver.interior import minimise
-from des_cli.solver.program import Expansion, Rows
+from des_cli.solver.program import Expansion, Measure, Rows
 
 
 class Program:
@@ -153,6 +154,92 @@ class Climb(Rows):
         at_next = np.zeros((len(x) - 1, 1, 4))
         at_next[:, 0, 3] = 1.0 / self.bound
         return -at_next, at_next
+
+
+class Curve(Rows):
+    """The control's second difference is at most so much: three samples in a row."""
+
+    def __init__(self, n, bound):
+        super().__init__(np.arange(n - 2))
+        self.bound = bound
+
+    def value(self, x):
+        return np.diff(x[:, 3:], 2, axis=0) / self.bound
+
+    def jacobian(self, x):
+        unit = np.zeros((len(x) - 2, 1, 4))
+        unit[:, 0, 3] = 1.0 / self.bound
+        return unit, -2.0 * unit, unit
+
+
+class Effort(Measure):
+    """int (u - rest)^2 over unit time, over its budget."""
+
+    def __init__(self, program, rest, budget):
+        self.weight, self.rest = program.weight / budget, rest
+
+    def value(self, x):
+        return float(self.weight @ np.sum((x[:, 3:] - self.rest) ** 2, axis=1))
+
+    def expand(self, x):
+        gradient, hessian = np.zeros_like(x), np.zeros((*x.shape, x.shape[1]))
+        gradient[:, 3:] = 2.0 * self.weight[:, None] * (x[:, 3:] - self.rest)
+        free = np.arange(3, x.shape[1])
+        hessian[:, free, free] = 2.0 * self.weight[:, None]
+        return Expansion(self.value(x), gradient, hessian)
+
+
+def test_a_budget_on_the_whole_motion():
+    # min 1/2 (u - 2.5)^2 with u^2 <= 1: u = 1, and the price z of u - 2.5 + 2 z u = 0.
+    program = Program(10)
+    program.goal = 2.5
+    program.budgets = (Effort(program, 0.0, 1.0),)
+    outcome = minimise(program, np.zeros((11, 4)))
+    assert outcome.status == "converged"
+    np.testing.assert_allclose(outcome.x[:, 3], 1.0, atol=1e-8)
+    np.testing.assert_allclose(outcome.prices, 0.75, rtol=1e-7)
+
+
+def test_several_budgets_of_which_two_bind():
+    # Nearest to (3, -1) in two discs about (0, 0) and (1, 1) of radius 1: where they meet.
+    program = Program(10, controls=2)
+    program.goal = np.array([3.0, -1.0])
+    rests = ([0.0, 0.0], [1.0, 1.0], [2.0, -1.0])
+    most = (1.0, 1.0, 9.0)
+    program.budgets = tuple(
+        Effort(program, np.array(r), m) for r, m in zip(rests, most, strict=True)
+    )
+    outcome = minimise(program, np.zeros((11, 5)))
+    assert outcome.status == "converged"
+    np.testing.assert_allclose(outcome.x[:, 3:], np.tile([1.0, 0.0], (11, 1)), atol=1e-7)
+    # u - goal + 2 z1 u + 2 z2 (u - 1) = 0
+    np.testing.assert_allclose(outcome.prices, [1.0, 0.5, 0.0], atol=1e-6)
+
+
+def test_a_budget_beside_local_inequalities_that_reach_over_three_samples():
+    n = 9
+    program = Program(n - 1)
+    program.goal = np.sin(np.arange(n) ** 2.0)[:, None]
+    program.rows = (Curve(n, 0.4),)
+    program.budgets = (Effort(program, 0.0, 0.05),)
+    outcome = minimise(program, np.zeros((n, 4)))
+    assert outcome.status == "converged"
+
+    def cost(u):
+        return 0.5 * float(program.weight @ (u - program.goal[:, 0]) ** 2)
+
+    bounds = [
+        {"type": "ineq", "fun": lambda u: 0.05 - program.weight @ u**2},
+        {"type": "ineq", "fun": lambda u: 0.4 - np.diff(u, 2)},
+        {"type": "ineq", "fun": lambda u: 0.4 + np.diff(u, 2)},
+    ]
+    peer = scipy.optimize.minimize(
+        cost, np.zeros(n), constraints=bounds, method="SLSQP", options={"ftol": 1e-14}
+    )
+    assert peer.success
+    assert outcome.cost == pytest.approx(peer.fun, rel=1e-7)
+    np.testing.assert_allclose(outcome.x[:, 3], peer.x, atol=1e-4)
+    assert np.abs(np.diff(outcome.x[:, 3], 2)).max() == pytest.approx(0.4, abs=1e-6)
 
 
 def test_an_unconstrained_quadratic_takes_one_step():
