@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond
 from des_cli.metrics import Measured, measure
+from des_cli.model.motion import Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Check, Run
 from des_cli.model.solution import Iteration
 from des_cli.notices import find_notices
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.consistency import require_consistent
+from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion
 from des_cli.reduction.verify import verify
@@ -44,6 +47,7 @@ def reduce_profile(
     require_consistent(profile.reduction, profile.name)
     asked = make_desired(profile)
     found = find_motion(profile, asked.motion, on_iteration)
+    found, led = _with_leads(profile, found)
     modified = found.solution.modified
     before = respond(profile.machine, profile.seat, asked.motion)
     after = respond(profile.machine, found.seat, modified)
@@ -60,7 +64,7 @@ def reduce_profile(
             *find_occupant_violations(
                 profile.machine, profile.seat, before, asked.motion, "desired"
             ),
-            *find_violations(profile.machine, modified, "modified"),
+            *find_violations(profile.machine, led, "modified"),
             *find_occupant_violations(profile.machine, found.seat, after, modified, "modified"),
         ),
         baselines=compare(found.problem, modified, chain_of(profile.machine, found.seat)),
@@ -73,6 +77,7 @@ def reduce_profile(
         desired=found.desired,
         seat=found.seat,
         solution=found.solution,
+        commands=led,
         before=before,
         after=after,
         checks=_checks(profile, found),
@@ -80,6 +85,18 @@ def reduce_profile(
         metrics=metrics,
         notices=tuple(metrics["notices"]),
     )
+
+
+def _with_leads(profile: Profile, found: Found) -> tuple[Found, Motion]:
+    """Return what was found and its motion with the leads; a lead too short is infeasible."""
+    reduction, modified = profile.reduction, found.solution.modified
+    if not found.solution.usable or not (reduction.lead_in or reduction.lead_out):
+        return found, modified
+    led = add_leads(profile.machine, modified, reduction.lead_in, reduction.lead_out)
+    if led.trouble and reduction.limits == "enforce":
+        refused = replace(found.solution, status="infeasible", message=led.trouble)
+        return replace(found, solution=refused), led.motion
+    return found, led.motion
 
 
 def _checks(profile: Profile, found: Found) -> tuple[Check, ...]:

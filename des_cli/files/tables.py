@@ -35,7 +35,7 @@ _ROWS_AT_ONCE = 65_536
 
 
 def command_columns(run: Run) -> dict[str, Floats]:
-    """Return the command table of the modified motion.
+    """Return the command table: the modified motion, with its leads if it has any.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def command_columns(run: Run) -> dict[str, Floats]:
         ``t_s``, ``arm_rpm`` (a velocity command; at a step of the rate the mean
         of both sides), ``fork_deg``, ``cab_deg`` (position commands).
     """
-    motion = run.solution.modified
+    motion = run.commands
     return {
         "t_s": motion.t,
         "arm_rpm": _in_unit("arm_rpm", motion.rate[:, 0]),

@@ -17,7 +17,12 @@ steep piece of one broken line."""
 
 
 def largest_onset(t: Floats, sides: Floats) -> Floats:
-    """Return the largest change of each component over ``WINDOW``, per second.
+    """Return the largest onset of each component, (m,); see `onsets`."""
+    return np.asarray(np.max(onsets(t, sides)[1], axis=1))
+
+
+def onsets(t: Floats, sides: Floats) -> tuple[Floats, Floats]:
+    """Return the change of each component over ``WINDOW``, per second.
 
     Parameters
     ----------
@@ -29,20 +34,22 @@ def largest_onset(t: Floats, sides: Floats) -> Floats:
 
     Returns
     -------
-    (m,) array
-        Magnitudes, in the unit of ``sides`` per second. A maneuver shorter than the
-        window is one window.
+    begin : (k,) array
+        The windows' first times, increasing [s]: all at which a change can be largest.
+        A maneuver shorter than the window is one window.
+    onset : (m, k) array
+        Magnitudes, in the unit of ``sides`` per second.
     """
     window = min(WINDOW, float(t[-1] - t[0]))
     beside = _BESIDE * np.diff(t)
     knots = np.stack([t[:-1] + beside, t[1:] - beside], axis=1).ravel()
     values = sides.reshape(len(knots), -1)
     # The difference of two broken lines is largest where one of them has its corner.
-    corners = np.concatenate([knots, knots - window])
+    corners = np.sort(np.concatenate([knots, knots - window]))
     begin = corners[(corners >= t[0]) & (corners + window <= t[-1])]
     begin = begin if len(begin) else t[:1]
     change = [
         np.interp(begin + window, knots, component) - np.interp(begin, knots, component)
         for component in values.T
     ]
-    return np.asarray(np.max(np.abs(change), axis=1) / window)
+    return begin, np.abs(change) / window

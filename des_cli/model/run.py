@@ -115,6 +115,9 @@ class Run:
     seat : Seat
         As fixed in the modified motion.
     solution : Solution
+    commands : Motion
+        What the command table plays: the modified motion, with its leads from and to
+        rest where the profile asks for them.
     before, after : Response
         Of the motion that the profile asks for, and of the modified one.
     checks : tuple of Check
@@ -133,6 +136,7 @@ class Run:
     desired: Motion
     seat: Seat
     solution: Solution
+    commands: Motion
     before: Response
     after: Response
     checks: tuple[Check, ...]

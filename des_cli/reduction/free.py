@@ -18,6 +18,7 @@ import numpy as np
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.coriolis import coriolis
+from des_cli.kinematics.response import respond_on
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
 from des_cli.model.metric import METRICS, Budget, MetricKey
@@ -41,7 +42,7 @@ from des_cli.reduction.free_problem import (
 )
 from des_cli.reduction.inside import find_inside
 from des_cli.reduction.limit_rows import Tie
-from des_cli.reduction.limits import find_violations
+from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.motion_program import MotionProgram
 from des_cli.reduction.ties import tie_reversals
 from des_cli.solver.barrier import Options, Outcome, Step, minimise
@@ -93,6 +94,14 @@ SETTLINGS = 6
 
 TOUCHING = 1.0 - 1e-9
 """Share of a budget that a table may spend."""
+
+G_COMPONENTS = ("Gx", "Gy", "Gz")
+
+LEAST_ROOM = 1e-4
+"""Share of a bound on what the occupant gets that is left once the table went beyond it."""
+
+AGAIN = 0.2
+"""Share by which more room is left to a bound than the table went beyond it."""
 
 LEFT = 0.999
 """Share of the budget that binds which a table should spend, at least."""
@@ -193,7 +202,7 @@ class _Search:
                     x, warm = np.zeros(program.size), False
                     inside = find_inside(program, x, self.log)
                 if inside is None:
-                    return self._refused(desired, self._unreachable(program))
+                    return self._refused(desired, self._unreachable(program, fit))
                 x = inside
             start, self.warm = x, warm
             outcome = self._minimise(program, x, rough=not last, warm=warm)
@@ -248,7 +257,7 @@ class _Search:
         """Return where to begin and whether that is near the optimum, or why nowhere."""
         inside = find_inside(program, np.zeros(program.size), self.log)
         if inside is None:
-            return self._unreachable(program)
+            return self._unreachable(program, fit)
         if self.well_posed:
             return inside, False
         first = self._minimise(program, inside, rough=True, warm=False)
@@ -301,8 +310,13 @@ class _Search:
             )
             spent = {m: deviation.value(m) / most for m, most in allowed.items()}
             worst = max(spent.values(), default=TOUCHING)
-            if worst <= TOUCHING and (worst >= LEFT or attempt == SETTLINGS - 1):
+            beyond = self._beyond(deviation, modified, seat)
+            spends = worst >= LEFT or attempt == SETTLINGS - 1
+            if worst <= TOUCHING and spends and not beyond:
                 break
+            if beyond:
+                room = self.task.room + (1.0 + AGAIN) * beyond
+                self.task = replace(self.task, room=room)
             factor = {m: (1.0 - 0.5 * ROOM) / share for m, share in spent.items()}
             if worst <= TOUCHING:  # a budget that is not the binding one stays
                 factor = {m: f if spent[m] == worst else 1.0 for m, f in factor.items()}
@@ -316,6 +330,18 @@ class _Search:
                 break
             outcome = self._minimise(program, inside, rough=False, warm=self.warm)
         return FreeResult(desired, self._solution(outcome, modified, desired, seat), seat)
+
+    def _beyond(self, deviation: Deviation, modified: Motion, seat: Seat) -> float:
+        """Return by how much the table exceeds a bound on what the occupant gets, relative."""
+        if self.task.reduction.limits != "enforce":
+            return 0.0
+        broken = find_occupant_violations(
+            self.task.machine, seat, deviation.after, modified, "modified"
+        )
+        # components of G are bounded relative to 1 g at least, magnitudes to themselves
+        sizes = (max(abs(v.limit), float(v.quantity in G_COMPONENTS)) for v in broken)
+        excesses = [abs(v.peak - v.limit) / size for v, size in zip(broken, sizes, strict=True)]
+        return max(*excesses, LEAST_ROOM) if excesses else 0.0
 
     def _table(
         self, program: MotionProgram, fit: ExecutableSpline, x: Floats
@@ -403,7 +429,7 @@ class _Search:
         )
         return FreeResult(desired, solution, self.task.seat)
 
-    def _unreachable(self, program: MotionProgram) -> str:
+    def _unreachable(self, program: MotionProgram, fit: ExecutableSpline) -> str:
         """Say which budgets the limits alone exceed."""
         values = program.values(np.zeros(program.size))
         budgets = [b for b in self.task.reduction.budget if b.metric not in AT_POINTS]
@@ -417,7 +443,13 @@ class _Search:
                 "keeping the machine's limits alone costs more than the budgets allow: "
                 f"{', '.join(over)}; smooth the motion, allow more, or take --limits warn"
             )
-        return "no motion near the desired one keeps the bounds on what the occupant may get"
+        task, desired = self.task, sample_spline(fit, self.t)
+        response = respond_on(task.chain, task.machine.gravity, desired)
+        broken = find_occupant_violations(task.machine, task.seat, response, desired, "desired")
+        return (
+            f"{'; '.join(str(violation) for violation in broken) or 'a bound is exceeded'}: no "
+            "motion within the budgets was found that keeps what the occupant may get"
+        )
 
 
 EACH = 120

@@ -83,6 +83,8 @@ class FreeTask:
         What fidelity is measured against.
     limits : tuple of JointLimits
         That hold for the motion.
+    room : float
+        Share of each bound on what the occupant gets that is left to the table.
     """
 
     machine: Machine
@@ -90,6 +92,7 @@ class FreeTask:
     reduction: Reduction
     reference: Motion
     limits: tuple[JointLimits, ...]
+    room: float = 0.0
 
     @classmethod
     def of(cls, profile: Profile, reference: Motion) -> FreeTask:
@@ -163,7 +166,7 @@ def pose_motion(
         smoothing=REGULARISATION / (grid.duration * unit**2),
         local=[
             *(_point_bound(task, angle, b) for b in reduction.budget if b.metric in AT_POINTS),
-            *_occupant_bounds(task.occupant, grid),
+            *_occupant_bounds(task.occupant, grid, task.room),
         ],
         seat=_free_seat(task),
         ground=measures.ground(task),
@@ -278,8 +281,8 @@ def _attitude_bound(chain: Chain, angle: Floats, most_deg: float) -> AttitudeBou
     return AttitudeBound(rotation, rotation(angle).T, float(np.radians(most_deg)))
 
 
-def _occupant_bounds(occupant: OccupantBounds, grid: SplineGrid) -> list[LocalBound]:
-    """Return the machine's bounds on what is felt."""
+def _occupant_bounds(occupant: OccupantBounds, grid: SplineGrid, room: float) -> list[LocalBound]:
+    """Return the machine's bounds on what is felt, drawn in by some room."""
     found: list[LocalBound] = []
     directions, bounds = [], []
     per_g = np.diag(PILOT_SIGNS) / STANDARD_GRAVITY_M_S2
@@ -290,12 +293,12 @@ def _occupant_bounds(occupant: OccupantBounds, grid: SplineGrid) -> list[LocalBo
                 bounds.append(bound)
     if bounds:
         scale = np.maximum(np.abs(bounds), 1.0)
-        found.append(ComponentBound(np.array(directions), np.array(bounds), scale))
+        found.append(ComponentBound(np.array(directions), np.array(bounds) - room * scale, scale))
     if np.isfinite(occupant.angular_acceleration):
-        found.append(NormBound("acceleration", occupant.angular_acceleration))
+        found.append(NormBound("acceleration", (1.0 - room) * occupant.angular_acceleration))
     if np.isfinite(occupant.g_onset):
         apart = grid.step / np.sqrt(3.0)  # between the two points of an interval
-        rate = per_g / (occupant.g_onset * apart)
+        rate = per_g / ((1.0 - room) * occupant.g_onset * apart)
         found.append(OnsetBound(np.concatenate([rate, -rate])))
     return found
 

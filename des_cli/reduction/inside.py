@@ -1,6 +1,7 @@
 """A point strictly inside budgets and bounds, from one that may be outside.
 
-The budgets' sum is minimised, with everything that is still exceeded relaxed to just
+Bounds at points are approached by a penalty, the squares of what exceeds them. Budgets
+are approached by minimising their sum, with what is still exceeded relaxed to just
 beyond where it stands, and relaxed less and less until all is inside.
 """
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.reduction.motion_program import JointBudget, MotionProgram
-from des_cli.reduction.motion_system import MotionExpansion
+from des_cli.reduction.motion_system import MotionExpansion, MotionSystem
 from des_cli.reduction.terms import Term
 from des_cli.solver.barrier import Options, Step, Values, minimise
 
@@ -22,16 +23,25 @@ ROOM = 0.02
 beginning takes hundreds of steps."""
 
 LITTLE_ROOM = 1e-3
-"""The same of a warm start."""
+"""The least that it may leave."""
+
+AIM = 0.01
+"""How far inside a bound at points the penalty pulls."""
 
 BEYOND = 0.05
-"""How far beyond where it stands an exceeded bound is relaxed."""
+"""How far beyond where it stands an exceeded budget is relaxed."""
 
 PROGRESS = 0.02
 """Share by which a round must lower the worst excess."""
 
 ROUNDS, EACH = 40, 12
 """Rounds, and Newton steps in each."""
+
+CENTRAL = Options(gap=1.0, start_gap=10.0, max_iterations=EACH)
+"""A large barrier keeps away from everything that could be in the way."""
+
+PULLED = Options(gap=1e-4, start_gap=0.1, max_iterations=4 * EACH)
+"""A small one lets the penalty act."""
 
 
 def find_inside(
@@ -48,30 +58,36 @@ def find_inside(
         Called with each Newton step.
     """
     values = program.values(x)
-    limits = program.linear(x)
-    if np.any(np.abs(limits) >= program.bounds):
+    if np.any(np.abs(program.linear(x)) >= program.bounds):
         return None
     if _worst(values) < -LITTLE_ROOM:
         return x
     nearest = _nearest(program)
+    plain = MotionProgram(replace(program.problem, cost=[], ground=None))
     for _ in range(ROUNDS):
-        worst = _worst(values)
-        if worst < -ROOM:
+        before = _worst(values)
+        if _largest(values.local) >= 1.0 - LITTLE_ROOM:
+            shift = max(_largest(values.budgets) - 1.0 + BEYOND, 0.0)
+            pulled = _Penalised(plain, shift)
+            x = minimise(pulled, x, replace(PULLED, stop_early=pulled.inside), on_step).x
+        elif before < -LITTLE_ROOM:
             return x
-        shift = max(worst + BEYOND, 0.0)
-        relaxed = _Relaxed(nearest, shift)
-        options = Options(gap=1e-2, start_gap=0.1, max_iterations=EACH, stop_early=relaxed.inside)
-        outcome = minimise(relaxed, x, options, on_step)
-        x, values = outcome.x, program.values(outcome.x)
-        if _worst(values) < -ROOM or _worst(values) > worst - PROGRESS * max(worst, ROOM):
+        else:
+            relaxed = _Relaxed(nearest, max(before + BEYOND, 0.0))
+            x = minimise(relaxed, x, replace(CENTRAL, stop_early=relaxed.inside), on_step).x
+        values = program.values(x)
+        if _worst(values) < -ROOM or _worst(values) > before - PROGRESS * max(before, ROOM):
             break
     return x if _worst(values) < -LITTLE_ROOM else None
 
 
+def _largest(values: Floats) -> float:
+    return float(np.max(values, initial=0.0))
+
+
 def _worst(values: Values) -> float:
     """Return the largest excess of a budget or bound over one."""
-    both = np.concatenate([values.budgets, values.local])
-    return float(np.max(both, initial=-1.0)) - 1.0 if len(both) else -1.0
+    return max(_largest(values.budgets), _largest(values.local)) - 1.0
 
 
 def _nearest(program: MotionProgram) -> MotionProgram:
@@ -83,16 +99,19 @@ def _nearest(program: MotionProgram) -> MotionProgram:
     return MotionProgram(replace(problem, cost=cost, budgets=[*terms, *keep]))
 
 
-class _Relaxed:
-    """A program whose budgets and bounds count from a shift on."""
+class _Wrapped:
+    """A program that shares its limits and its systems with another."""
 
     def __init__(self, program: MotionProgram, shift: float) -> None:
         self._program, self._shift = program, shift
         self.bounds = program.bounds
         self.linear, self.linear_change = program.linear, program.linear_change
         self.linear_adjoint, self.reduce = program.linear_adjoint, program.reduce
-        self.system = program.system
         self._last: Values | None = None
+
+
+class _Relaxed(_Wrapped):
+    """A program whose budgets and bounds count from a shift on."""
 
     def values(self, x: Floats) -> Values:
         """Evaluate, shifted."""
@@ -108,6 +127,65 @@ class _Relaxed:
         expansion.local = expansion.local - self._shift
         return expansion
 
+    def system(
+        self, expansion: MotionExpansion, stiffness: Floats, shift: float
+    ) -> MotionSystem | None:
+        """Factorise."""
+        return self._program.system(expansion, stiffness, shift)
+
     def inside(self, budgets: Floats) -> bool:
         """Return whether the last iterate is inside without the shift."""
         return self._last is not None and _worst(self._last) < -ROOM
+
+
+class _Penalised(_Wrapped):
+    """A program whose cost is the mean square of what exceeds bounds at points.
+
+    Its budgets count from a shift on; it has no bounds at points of its own.
+    """
+
+    def values(self, x: Floats) -> Values:
+        """Evaluate the penalty."""
+        self._last = values = self._program.values(x)
+        excess = np.maximum(values.local - (1.0 - AIM), 0.0)
+        cost = values.cost + float(np.mean(excess**2))
+        return Values(cost, values.budgets - self._shift, np.zeros(0))
+
+    def expand(
+        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
+    ) -> _PenaltyExpansion:
+        """Expand the penalty; where it is zero it has no curvature."""
+        excess = np.maximum(self._program.values(x).local - (1.0 - AIM), 0.0)
+        slope = 2.0 * excess / len(excess)
+        bend = 2.0 * (excess > 0.0) / len(excess)
+        inner = self._program.expand(x, budget, slope, bend, share)
+        return _PenaltyExpansion(inner, float(np.mean(excess**2)), slope, self._shift)
+
+    def system(
+        self, expansion: _PenaltyExpansion, stiffness: Floats, shift: float
+    ) -> MotionSystem | None:
+        """Factorise."""
+        return self._program.system(expansion.inner, stiffness, shift)
+
+    def inside(self, budgets: Floats) -> bool:
+        """Return whether the last iterate keeps the bounds at points."""
+        return self._last is not None and _largest(self._last.local) < 1.0 - 0.5 * AIM
+
+
+class _PenaltyExpansion:
+    """The expansion of a penalised program."""
+
+    def __init__(self, inner: MotionExpansion, penalty: float, slope: Floats, shift: float) -> None:
+        self.inner = inner
+        self.cost = inner.cost + penalty
+        self.budgets = inner.budgets - shift
+        self.gradient: Floats = inner.gradient + inner.local_adjoint(slope)
+        self.budget_gradients = inner.budget_gradients
+
+    def local_change(self, step: Floats) -> Floats:
+        """Return nothing: there are no bounds."""
+        return np.zeros(0)
+
+    def local_adjoint(self, multiplier: Floats) -> Floats:
+        """Return zero."""
+        return np.zeros_like(self.gradient)

@@ -10,6 +10,7 @@ import numpy as np
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.coriolis import angular_acceleration_split
+from des_cli.kinematics.onset import onsets
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Machine, Seat
 from des_cli.model.motion import Motion
@@ -206,12 +207,8 @@ def _g_violations(
         sides = response.seat_g[..., index]
         yield from _beyond(which, component, _at_samples(sides), most, motion.t)
         yield from _beyond(which, component, _at_samples(-sides), -least, motion.t, sign=-1.0)
-        # from sample to sample, so that a jump at a sample counts as what it is on this grid
-        samples = np.append(sides[:, 0], sides[-1, 1])
-        change = np.abs(np.diff(samples)) / motion.step
-        yield from _beyond(
-            which, onset, _at_samples(np.stack([change] * 2, axis=1)), bounds.g_onset, motion.t
-        )
+        begin, rise = onsets(motion.t, sides[..., None])
+        yield from _beyond(which, onset, rise[0], bounds.g_onset, begin)
 
 
 def _beyond(

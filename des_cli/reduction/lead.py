@@ -1,0 +1,122 @@
+"""From rest to a maneuver's start and from its end to rest, for the command table.
+
+Over the lead each joint's rate is the cubic that leaves rest without acceleration and
+arrives with the rate and the acceleration of the maneuver, or the mirror image of that:
+the smoothest that joins both. Where the joints stand before is what follows from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import JOINTS, Machine
+from des_cli.model.motion import Motion
+from des_cli.reduction.limits import find_violations
+
+LONGEST = 600.0
+"""Lead [s] beyond which no search for a sufficient one goes."""
+
+HALVINGS = 12
+"""Of the bracket of the shortest sufficient lead: to a few thousandths of it."""
+
+
+@dataclass(frozen=True)
+class Led:
+    """A motion with its leads.
+
+    Parameters
+    ----------
+    motion : Motion
+        From rest to rest where both leads are there; the maneuver keeps its times.
+    trouble : str
+        Empty, or which lead is too short, and how long it must be.
+    """
+
+    motion: Motion
+    trouble: str = ""
+
+
+def add_leads(machine: Machine, motion: Motion, lead_in: float, lead_out: float) -> Led:
+    """Put a lead before and after a motion.
+
+    Parameters
+    ----------
+    machine : Machine
+        Its limits hold for the leads too.
+    motion : Motion
+        Without rate steps.
+    lead_in, lead_out : float
+        [s]; 0 for none.
+    """
+    trouble = ""
+    led = motion
+    for name, duration, after in (("lead_in_s", lead_in, False), ("lead_out_s", lead_out, True)):
+        if not duration:
+            continue
+        lead = _lead(motion, duration, after=after)
+        if broken := find_violations(machine, lead, "modified"):
+            needed = _shortest(machine, motion, after=after)
+            joints = ", ".join(joint for joint in JOINTS if joint in {v.joint for v in broken})
+            trouble = f"{name}: {duration:g} s is too short for the {joints}"
+            trouble += f"; it takes {needed:.3g} s" if needed else "; no lead keeps the limits"
+        led = _joined(led, lead) if after else _joined(lead, led)
+    return Led(led, trouble)
+
+
+def _lead(motion: Motion, duration: float, *, after: bool) -> Motion:
+    """Return the lead alone, from or to rest."""
+    step = float(np.median(motion.step))
+    count = max(int(np.ceil(duration / step - 1e-9)), 4)
+    u = np.linspace(0.0, 1.0, count + 1)
+    if after:
+        speed, gain, first = motion.rate_end[-1], -motion.acceleration[-1], motion.t[-1]
+    else:
+        speed, gain, first = motion.rate_start[0], motion.acceleration[0], motion.t[0] - duration
+    rise = _cubic(u, speed, gain * duration)
+    rate = rise[::-1] if after else rise
+    t = first + duration * u
+    turned = np.vstack(
+        [np.zeros(3), np.cumsum(0.5 * np.diff(t)[:, None] * (rate[1:] + rate[:-1]), axis=0)]
+    )
+    offset = motion.angle[-1] if after else motion.angle[0] - turned[-1]
+    if after:
+        t[0] = motion.t[-1]
+    else:
+        t[-1] = motion.t[0]
+    return Motion(t, offset + turned, rate[:-1], rate[1:])
+
+
+def _cubic(u: Floats, value: Floats, slope: Floats) -> Floats:
+    """Return the cubic from zero with slope zero to a value with a slope, (n, 3)."""
+    square, cube = u[:, None] ** 2, u[:, None] ** 3
+    return np.asarray(value * (3.0 * square - 2.0 * cube) + slope * (cube - square))
+
+
+def _joined(first: Motion, second: Motion) -> Motion:
+    return Motion(
+        t=np.concatenate([first.t, second.t[1:]]),
+        angle=np.concatenate([first.angle, second.angle[1:]]),
+        rate_start=np.concatenate([first.rate_start, second.rate_start]),
+        rate_end=np.concatenate([first.rate_end, second.rate_end]),
+    )
+
+
+def _shortest(machine: Machine, motion: Motion, *, after: bool) -> float | None:
+    """Return the shortest lead that keeps the limits [s], or None."""
+
+    def keeps(duration: float) -> bool:
+        return not find_violations(machine, _lead(motion, duration, after=after), "modified")
+
+    high = 0.5
+    while not keeps(high):
+        high *= 2.0
+        if high > LONGEST:
+            return None
+    low = 0.5 * high
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if keeps(middle) else (middle, high)
+    return high
