@@ -56,6 +56,8 @@ RANGES: dict[MetricKey, tuple[float, float]] = {
     "seat_angular_acceleration_deviation_relative": (0.1, 0.6),
     "seat_angular_acceleration_rms_error_rad_s2": (0.05, 0.5),
     "attitude_error_max_deg": (2.0, 10.0),
+    "seat_angular_acceleration_rms_ratio": (0.7, 1.2),
+    "seat_angular_acceleration_peak_ratio": (0.7, 1.2),
 }
 """Least and most of each kind of budget."""
 

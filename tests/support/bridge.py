@@ -15,6 +15,7 @@ import numpy as np
 from des_cli.model.arrays import Floats
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
+from des_cli.model.motion import Motion
 from des_cli.reduction.free_problem import MARGIN, REGULARISATION, FreeTask
 from des_cli.reduction.reference import sample_motion
 from des_cli.solver.spline import SplineGrid
@@ -26,6 +27,8 @@ from tests.support.spline_task import (
     JOINTS,
     RATE,
     TURNING,
+    TURNING_PEAK,
+    TURNING_RMS,
     JointLimits,
     Reference,
     Task,
@@ -82,9 +85,10 @@ def peer_task(task: FreeTask, grid: SplineGrid, base: Floats) -> Task:
     states = sample_motion(task.reference, t)
     seat = (task.seat.yaw, task.seat.pitch)
     felt = by_closed_forms(*states, *seat)
+    table = _at_rows(task.reference, seat)
     budgets: dict[str, float] = {}
     for budget in reduction.budget:
-        name, most = _peer_budget(budget, felt)
+        name, most = _peer_budget(budget, felt, table)
         budgets[name] = min(most, budgets.get(name, math.inf))
     return Task(
         duration=grid.duration,
@@ -107,8 +111,17 @@ def peer_task(task: FreeTask, grid: SplineGrid, base: Floats) -> Task:
     )
 
 
-def _peer_budget(budget: Budget, felt: Felt) -> tuple[str, float]:
-    """Return the peer's name of a budget and its most."""
+def _at_rows(motion: Motion, seat: tuple[float, float]) -> Felt:
+    """Return what is felt at both ends of a table's intervals."""
+    both = (motion.angle_sides, motion.rate_sides, np.repeat(motion.acceleration[:, None], 2, 1))
+    return by_closed_forms(*(each.reshape(-1, 3) for each in both), *seat)
+
+
+def _peer_budget(budget: Budget, felt: Felt, table: Felt) -> tuple[str, float]:
+    """Return the peer's name of a budget and its most, which may be a share of the reference's.
+
+    Integrals are taken at the grid's points, a peak at the rows of the reference's table.
+    """
     match budget.metric:
         case "joint_deviation_relative":
             return JOINTS, budget.most
@@ -124,6 +137,10 @@ def _peer_budget(budget: Budget, felt: Felt) -> tuple[str, float]:
             return TURNING, budget.most
         case "seat_angular_acceleration_deviation_relative":
             return TURNING, budget.most * _rms(felt.turning)
+        case "seat_angular_acceleration_rms_ratio":
+            return TURNING_RMS, budget.most * _rms(felt.turning)
+        case "seat_angular_acceleration_peak_ratio":
+            return TURNING_PEAK, budget.most * float(np.linalg.norm(table.turning, axis=1).max())
         case "attitude_error_max_deg":
             return ATTITUDE, budget.most
     raise ValueError(f"the peer has no budget on {budget.metric}")
