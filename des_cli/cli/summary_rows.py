@@ -30,10 +30,19 @@ def summary_rows(result: JobResult) -> list[tuple[str, str]]:
         ("turning", _turning(metrics)),
         ("seat G", _force(metrics)),
         ("budgets", ", ".join(map(str, spent_budgets(metrics)))),
+        ("constants", _constants(metrics)),
         ("ends", _ends(metrics)),
         ("study", "; ".join(_study(metrics))),
     ]
     return [(label, text) for label, text in rows if text]
+
+
+def _constants(metrics: Mapping[str, Any]) -> str:
+    """Say which constants were found together with the motion."""
+    return ", ".join(
+        f"{name.replace('_', ' ')} {each['before_deg']:.1f} -> {each['after_deg']:.1f} deg"
+        for name, each in (metrics.get("parameters") or {}).items()
+    )
 
 
 def change(reduction: float | None) -> str:

@@ -28,6 +28,7 @@ from des_cli.files.manifest import (
     read_bytes,
     read_manifest,
 )
+from des_cli.files.run_profile import encode_run_profile
 from des_cli.files.tables import (
     command_columns,
     encode_table,
@@ -39,6 +40,7 @@ from des_cli.model.run import Run
 
 COMMANDS = "commands.csv"
 TRAJECTORY = "trajectory.parquet"
+PROFILE = "profile.yaml"
 METRICS = "metrics.json"
 
 
@@ -198,6 +200,8 @@ def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
         TRAJECTORY: encode_table(trajectory, "parquet"),
         METRICS: encode_json(run.metrics),
     }
+    if run.metrics.get("parameters"):
+        outputs[PROFILE] = encode_run_profile(run, COMMANDS)
     if plots:
         # Imported here: matplotlib costs half a second that --no-plots does not need.
         from des_cli.plots import draw_plots

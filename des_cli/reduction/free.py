@@ -19,6 +19,7 @@ import numpy as np
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.coriolis import coriolis
 from des_cli.kinematics.response import respond_on
+from des_cli.kinematics.twist import seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
 from des_cli.model.metric import METRICS, Budget, MetricKey
@@ -175,6 +176,9 @@ class _Search:
         self.well_posed = felt or task.reduction.objective != "coriolis"
 
     def run(self) -> FreeResult:
+        if not seat_forms(self.task.chain, self.task.machine.gravity).vertical:
+            why = "free joints need an arm that turns about the vertical; take --control scalar"
+            return self._refused(self.task.reference, why)
         grids = self._grids()
         fits = [self._fit(grid) for grid in grids]
         finest = fits[-1]
@@ -189,9 +193,10 @@ class _Search:
         x = start = np.zeros(0)
         for level, fit in enumerate(fits):
             last = level == len(fits) - 1
-            program = self._program(fit, budgets)
+            level_budgets = budgets if last else _drawn_in(budgets)
+            program = self._program(fit, level_budgets)
             if outcome is None:
-                started = self._start(program, fit, budgets, alone=last)
+                started = self._start(program, fit, level_budgets)
                 if isinstance(started, str):
                     return self._refused(desired, started)
                 x, warm = started
@@ -203,6 +208,7 @@ class _Search:
                     inside = find_inside(program, x, self.log)
                 if inside is None:
                     return self._refused(desired, self._unreachable(program, fit))
+                warm = warm and inside is x
                 x = inside
             start, self.warm = x, warm
             outcome = self._minimise(program, x, rough=not last, warm=warm)
@@ -251,8 +257,6 @@ class _Search:
         program: MotionProgram,
         fit: ExecutableSpline,
         budgets: Sequence[Budget],
-        *,
-        alone: bool,
     ) -> tuple[Floats, bool] | str:
         """Return where to begin and whether that is near the optimum, or why nowhere."""
         inside = find_inside(program, np.zeros(program.size), self.log)
@@ -277,7 +281,7 @@ class _Search:
             inside = find_inside(program, x, self.log)
             if inside is None:
                 return None
-            outcome = self._minimise(program, inside, rough=True, warm=outcome is not None)
+            outcome = self._minimise(program, inside, rough=True, warm=False)
         return outcome
 
     def _minimise(self, program: MotionProgram, x: Floats, *, rough: bool, warm: bool) -> Outcome:
@@ -455,11 +459,22 @@ class _Search:
 EACH = 120
 """Newton steps of one rough minimisation, at the most."""
 
+COARSE_ROOM = 1e-2
+"""Share of a bound at points that a coarse grid leaves to the finer ones."""
+
 MOVING = 1e-6
 """Rate relative to its largest below which a factor on it means nothing."""
 
 MOST_SHARE = 1e3
 """Largest budget that the way down from above starts with."""
+
+
+def _drawn_in(budgets: Sequence[Budget]) -> list[Budget]:
+    """Return budgets for a coarse grid, whose points see less of a largest value."""
+    return [
+        replace(b, most=b.most * (1.0 - COARSE_ROOM)) if b.metric in AT_POINTS else b
+        for b in budgets
+    ]
 
 
 def _looser(budget: Budget, multiple: float) -> float:

@@ -75,9 +75,13 @@ def find_motion(profile: Profile, reference: Motion, report: Report | None = Non
 def moves_freely(reduction: Reduction) -> bool:
     """Return whether the joints move freely, or per joint within budgets.
 
-    A motion per joint is a free one that stands still where the desired motion does.
+    A motion per joint is a free one that stands still where the desired motion does,
+    unless something is asked of the factors themselves.
     """
-    per_joint = reduction.control == "per-joint" and bool(reduction.budget)
+    of_factors = reduction.jacobian == "adapted" or any(
+        budget.metric == "mean_square_one_minus_p" for budget in reduction.budget
+    )
+    per_joint = reduction.control == "per-joint" and bool(reduction.budget) and not of_factors
     return reduction.control == "free" or per_joint
 
 
