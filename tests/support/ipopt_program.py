@@ -24,9 +24,17 @@ from tests.support.spline_task import (
     JOINTS,
     RATE,
     TURNING,
+    TURNING_PEAK,
+    TURNING_RMS,
     Task,
     basis,
 )
+
+SUMS = 7
+"""Integrals, of which each interval has a share."""
+
+OUTPUTS = SUMS + 4
+"""Outputs of one interval: these, and two bounded quantities at each of its two points."""
 
 
 def seat_in_casadi(angle: Any, rate: Any, acceleration: Any, yaw: Any, pitch: Any) -> Any:
@@ -74,22 +82,24 @@ def _reference_seat(task: Task) -> tuple[Floats, ...]:
 
 @dataclass(frozen=True)
 class _Interval:
-    """One interval's shares of the six sums, its two attitude errors, and their derivatives.
+    """One interval's shares of the sums, what is bounded at its points, and their derivatives.
+
+    At the points: two squared attitude errors, then two squared angular accelerations.
 
     Unknowns: 12 coordinates of its control points, point after point, then the seat's yaw
     and pitch where these are free. Data: 2 x (theta, W, c, dW, G, R) of the reference.
     """
 
-    value: ca.Function  # (unknowns, data) -> sums (6), attitudes (2)
-    slope: ca.Function  # (unknowns, data) -> gradient by weights (weights (8)) . outputs
-    curvature: ca.Function  # (unknowns, data, weights (8)) -> Hessian of weights . outputs
+    value: ca.Function  # (unknowns, data) -> sums (7), at points (4)
+    slope: ca.Function  # (unknowns, data) -> their gradients (11, unknowns)
+    curvature: ca.Function  # (unknowns, data, weights (11)) -> Hessian of weights . outputs
 
 
 def _interval(task: Task, h: float, size: int) -> _Interval:
-    unknowns, data, weights = ca.SX.sym("v", size), ca.SX.sym("data", 48), ca.SX.sym("w", 8)
+    unknowns, data, weights = ca.SX.sym("v", size), ca.SX.sym("data", 48), ca.SX.sym("w", OUTPUTS)
     points = ca.reshape(unknowns[:12], 3, 4)
     seat = (unknowns[12], unknowns[13]) if size > 12 else task.seat
-    sums, apart = ca.SX.zeros(6), []
+    sums, apart, turnings = ca.SX.zeros(SUMS), [], []
     for gauss, u in enumerate(GAUSS):
         rows = basis(u, h)
         states = [points @ ca.DM(rows[order]) for order in range(3)]
@@ -104,9 +114,11 @@ def _interval(task: Task, h: float, size: int) -> _Interval:
             ca.sumsqr(g - g0),
             ca.sumsqr(states[0] - theta),
             ca.sumsqr(dw - dw0),
+            ca.sumsqr(dw),
         )
         apart.append(ca.sumsqr(ca.vec(attitude) - r0))
-    outputs = ca.vertcat(sums, *apart)
+        turnings.append(ca.sumsqr(dw))
+    outputs = ca.vertcat(sums, *apart, *turnings)
     hessian, _ = ca.hessian(ca.dot(weights, outputs), unknowns)
     return _Interval(
         ca.Function("value", [unknowns, data], [ca.cse(outputs)]),
@@ -157,27 +169,39 @@ def program_of(task: Task) -> Program:
     # what of the sums is in the objective and in each budget
     weight = h / 2
     denominator = weight * np.einsum("ni,ij,nj", c0, task.r1, c0)
-    share = BLEND * np.trace(task.r1) / 3
-    goal = np.zeros(6)
-    goal[:2] = {"coriolis": (1, 0), "blend": (1, share), "felt": (0, share)}[task.objective]
+    isotropic = np.trace(task.r1) / 3
+    goal = np.zeros(SUMS)
+    goal[:2] = {
+        "coriolis": (1, 0),
+        "blend": (1, BLEND * isotropic),
+        "felt": (0, isotropic),
+    }[task.objective]
     goal /= denominator
     scale = {
         RATE: (2, weight * (w0**2).sum()),
         G_RMS: (3, span),
         JOINTS: (4, weight * (theta0**2).sum()),
         TURNING: (5, span),
+        TURNING_RMS: (6, span),
     }
-    totals = [name for name in task.budgets if name != ATTITUDE]
-    shares = np.zeros((len(totals), 6))
+    totals = [name for name in task.budgets if name in scale]
+    shares = np.zeros((len(totals), SUMS))
     for row, name in enumerate(totals):
         column, whole = scale[name]
         shares[row, column] = 1 / (task.budgets[name] ** 2 * whole)
     budgets = {name: slice(row, row + 1) for row, name in enumerate(totals)}
-    attitudes = 0.0
-    if ATTITUDE in task.budgets:
-        attitudes = 1 / (8 * math.sin(math.radians(task.budgets[ATTITUDE]) / 2) ** 2)
-        budgets[ATTITUDE] = slice(len(totals), len(totals) + 2 * k)
-    first_linear = len(totals) + (2 * k if attitudes else 0)
+    first_linear = len(totals)
+    bounded: list[tuple[int, float, slice]] = []  # first output, factor, rows in g
+    for output, (name, unit) in enumerate(
+        (
+            (ATTITUDE, lambda most: 8 * math.sin(math.radians(most) / 2) ** 2),
+            (TURNING_PEAK, lambda most: most**2),
+        )
+    ):
+        if name in task.budgets:
+            budgets[name] = slice(first_linear, first_linear + 2 * k)
+            bounded.append((SUMS + 2 * output, 1 / unit(task.budgets[name]), budgets[name]))
+            first_linear += 2 * k
 
     linear, low, high = _linear(task, h, n)
     roughness = _roughness(task, h, n)
@@ -191,22 +215,23 @@ def program_of(task: Task) -> Program:
         local = ca.vertcat(local, ca.repmat(x[-2:], 1, k))
 
     outputs = interval.value.map(k)(local, data)
-    sums = ca.sum2(outputs[:6, :])
+    sums = ca.sum2(outputs[:SUMS, :])
     f = ca.dot(goal, sums) + ca.sumsqr(_dm(roughness) @ (x - base))
     rows = [ca.DM(shares) @ sums] if totals else []
-    if attitudes:
-        rows.append(attitudes * ca.vec(outputs[6:, :]))
+    rows += [factor * ca.vec(outputs[at : at + 2, :]) for at, factor, _ in bounded]
     g = ca.vertcat(*rows, _dm(linear) @ x)
 
-    # the slopes of interval i are columns size * i ... of an (8, size * k) matrix
+    # the slopes of interval i are columns size * i ... of an (11, size * k) matrix
     slopes = interval.slope.map(k)(local, data)
     places = _places(k, size, n)
     scatter = _dm(sparse.csr_matrix((np.ones(size * k), (places.ravel(), np.arange(size * k)))))
-    gradients = slopes[:6, :] @ scatter.T
+    gradients = slopes[:SUMS, :] @ scatter.T
     df = gradients.T @ ca.DM(goal) + curved @ (x - base)
     jacobians = [ca.DM(shares) @ gradients] if totals else []
-    if attitudes:
-        jacobians.append(attitudes * _attitude_rows(slopes[6:, :], places, k, size, n))
+    jacobians += [
+        factor * _point_rows(slopes[at : at + 2, :], places, k, size, n)
+        for at, factor, _ in bounded
+    ]
     dg = ca.vertcat(*jacobians, _dm(linear))
 
     lam_f, lam_g = ca.MX.sym("lam_f"), ca.MX.sym("lam_g", g.shape[0])
@@ -214,12 +239,10 @@ def program_of(task: Task) -> Program:
     if totals:
         weights += ca.DM(shares).T @ lam_g[: len(totals)]
     weights = ca.repmat(weights, 1, k)
-    apart = (
-        attitudes * ca.reshape(lam_g[len(totals) : first_linear], 2, k)
-        if attitudes
-        else ca.MX(ca.DM.zeros(2, k))
-    )
-    blocks = interval.curvature.map(k)(local, data, ca.vertcat(weights, apart))
+    at_points = [ca.MX(ca.DM.zeros(2, k))] * 2
+    for at, factor, where in bounded:
+        at_points[(at - SUMS) // 2] = factor * ca.reshape(lam_g[where], 2, k)
+    blocks = interval.curvature.map(k)(local, data, ca.vertcat(weights, *at_points))
     hessian = _assemble(blocks, places, k, size, n) + lam_f * ca.triu(curved)
 
     least, most = np.full(n, -INFINITE), np.full(n, INFINITE)
@@ -277,8 +300,8 @@ def _assemble(blocks: Any, places: Any, k: int, size: int, n: int) -> Any:
     return _scattered(ca.vec(blocks)[upper.tolist()], rows[upper], columns[upper], (n, n))
 
 
-def _attitude_rows(slopes: Any, places: Any, k: int, size: int, n: int) -> Any:
-    """Return the Jacobian of the attitude errors, two of each interval, (2 K, n)."""
+def _point_rows(slopes: Any, places: Any, k: int, size: int, n: int) -> Any:
+    """Return the Jacobian of a quantity at points, two of each interval, (2 K, n)."""
     columns = np.repeat(places, 2, axis=1).ravel()
     rows = (2 * np.arange(k)[:, None] + np.tile([0, 1], size)).ravel()
     return _scattered(ca.vec(slopes), rows, columns, (2 * k, n))

@@ -25,6 +25,8 @@ G_RMS = "seat_g_rms_error_g"
 JOINTS = "joint_deviation_relative"
 TURNING = "seat_angular_acceleration_rms_error_rad_s2"
 ATTITUDE = "attitude_error_max_deg"
+TURNING_RMS = "seat_angular_acceleration_rms_rad_s2"
+TURNING_PEAK = "seat_angular_acceleration_peak_rad_s2"
 
 ENDS = ("free", "match-start", "match-rates", "match-both")
 OPTIMISE = ("seat_yaw", "seat_pitch", "fork_start", "cab_start")

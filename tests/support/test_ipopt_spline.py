@@ -17,6 +17,8 @@ from tests.support.spline_task import (
     OPTIMISE,
     RATE,
     TURNING,
+    TURNING_PEAK,
+    TURNING_RMS,
     Task,
     des_limits,
     reference_of,
@@ -25,6 +27,7 @@ from tests.support.spline_task import (
 
 K = 50
 LIMITS = des_limits(2.0)
+BUDGETS = (RATE, ATTITUDE, G_RMS, JOINTS, TURNING, TURNING_RMS, TURNING_PEAK)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +47,7 @@ def test_assembled_derivatives_are_those_of_the_whole_graph(
         reference_of(cobra, 1.0, k),
         draw.normal(size=(k + 3, 3)),
         LIMITS,
-        {RATE: 0.1, ATTITUDE: 5.0, G_RMS: 0.05, JOINTS: 0.05, TURNING: 0.15},
+        dict(zip(BUDGETS, (0.1, 5.0, 0.05, 0.05, 0.15, 0.5, 0.6), strict=True)),
         objective,
         r1=np.array([[2.0, 0.3, 0.0], [0.3, 1.0, 0.0], [0.0, 0.0, 0.5]]),
         optimise=optimise,
