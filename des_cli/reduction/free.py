@@ -49,16 +49,9 @@ from des_cli.reduction.ties import tie_reversals
 from des_cli.solver.barrier import Options, Outcome, Step, minimise
 from des_cli.solver.spline import SplineGrid
 
-WELL_POSED: frozenset[MetricKey] = frozenset(
-    {
-        "seat_rate_deviation_relative",
-        "seat_angular_acceleration_deviation_relative",
-        "seat_angular_acceleration_rms_error_rad_s2",
-        "seat_angular_acceleration_rms_ratio",
-        "seat_angular_acceleration_peak_ratio",
-    }
-)
-"""Metrics that see fast motions, so that a budget on one of them leaves one optimum."""
+WELL_POSED: MetricKey = "seat_rate_deviation_relative"
+"""The metric that sees fast motions of every joint, so that a budget on it leaves one
+optimum."""
 
 NOTHING = 1e-18
 """Mean square of the weighted cross-coupling [rad^2/s^4] below which there is none."""
@@ -90,8 +83,9 @@ cost is within this of a minimum's."""
 ROOM = 1e-4
 """Share of each budget that is left to the table, which is a little other than the spline."""
 
-SETTLINGS = 6
-"""Solutions with ever tighter budgets until the table keeps them."""
+SETTLINGS, GENEROUS = 10, 4
+"""Solutions with adapted budgets until the table keeps them, and after how many of them
+a table need not spend them any more."""
 
 TOUCHING = 1.0 - 1e-9
 """Share of a budget that a table may spend."""
@@ -325,8 +319,9 @@ class _Search:
             spent = {m: deviation.value(m) / most for m, most in allowed.items()}
             worst = max(spent.values(), default=TOUCHING)
             beyond = self._beyond(deviation, modified, seat)
-            spends = worst >= LEFT or attempt == SETTLINGS - 1
-            if worst <= TOUCHING and spends and not beyond:
+            spends = worst >= LEFT or attempt >= GENEROUS
+            kept = worst <= TOUCHING and not beyond
+            if (kept and spends) or attempt == SETTLINGS - 1:
                 break
             if beyond:
                 room = self.task.room + (1.0 + AGAIN) * beyond
@@ -334,8 +329,9 @@ class _Search:
             factor = {m: (1.0 - 0.5 * ROOM) / share for m, share in spent.items()}
             if worst <= TOUCHING:  # a budget that is not the binding one stays
                 factor = {m: f if spent[m] == worst else 1.0 for m, f in factor.items()}
-            else:
-                factor = {m: min(1.0, f) for m, f in factor.items()}
+            else:  # the table follows the spline with a delay: ask for a little more each time
+                over = {m: (1.0 + attempt * AGAIN) * (1.0 - f) for m, f in factor.items()}
+                factor = {m: 1.0 - max(each, 0.0) for m, each in over.items()}
             budgets = [replace(b, most=b.most * factor[b.metric]) for b in budgets]
             program = self._program(fit, budgets)
             # from where the search began: at its end hundreds of limits have no room

@@ -1,8 +1,8 @@
 """A point strictly inside budgets and bounds, from one that may be outside.
 
 Bounds at points are approached by a penalty, the squares of what exceeds them. Budgets
-are approached by minimising their sum, with what is still exceeded relaxed to just
-beyond where it stands, and relaxed less and less until all is inside.
+that are exceeded are approached by minimising their sum, relaxed to just beyond where
+they stand, and less and less until all is inside. What is kept stays kept.
 """
 
 from __future__ import annotations
@@ -12,10 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from des_cli.model.arrays import Floats
-from des_cli.reduction.motion_program import JointBudget, MotionProgram
+from des_cli.model.arrays import Flags, Floats
+from des_cli.reduction.motion_program import MotionProgram
 from des_cli.reduction.motion_system import MotionExpansion, MotionSystem
-from des_cli.reduction.terms import Term
 from des_cli.solver.barrier import Options, Step, Values, minimise
 
 ROOM = 0.02
@@ -62,18 +61,18 @@ def find_inside(
         return None
     if _worst(values) < -LITTLE_ROOM:
         return x
-    nearest = _nearest(program)
     plain = MotionProgram(replace(program.problem, cost=[], ground=None))
     for _ in range(ROUNDS):
         before = _worst(values)
+        over = np.maximum(values.budgets - 1.0 + BEYOND, 0.0)
+        over[values.budgets < 1.0 - LITTLE_ROOM] = 0.0  # what is kept is kept
         if _largest(values.local) >= 1.0 - LITTLE_ROOM:
-            shift = max(_largest(values.budgets) - 1.0 + BEYOND, 0.0)
-            pulled = _Penalised(plain, shift)
+            pulled = _Penalised(plain, over)
             x = minimise(pulled, x, replace(PULLED, stop_early=pulled.inside), on_step).x
         elif before < -LITTLE_ROOM:
             return x
         else:
-            relaxed = _Relaxed(nearest, max(before + BEYOND, 0.0))
+            relaxed = _Relaxed(_nearest(program, over > 0.0), over)
             x = minimise(relaxed, x, replace(CENTRAL, stop_early=relaxed.inside), on_step).x
         values = program.values(x)
         if _worst(values) < -ROOM or _worst(values) > before - PROGRESS * max(before, ROOM):
@@ -90,19 +89,24 @@ def _worst(values: Values) -> float:
     return max(_largest(values.budgets), _largest(values.local)) - 1.0
 
 
-def _nearest(program: MotionProgram) -> MotionProgram:
-    """Return the program whose cost is the sum of the budgets."""
+def _nearest(program: MotionProgram, exceeded: Flags) -> MotionProgram:
+    """Return the program whose cost is the sum of the budgets that are exceeded."""
     problem = program.problem
-    terms = [budget for budget in problem.budgets if isinstance(budget, Term)]
-    keep = [budget for budget in problem.budgets if isinstance(budget, JointBudget)]
-    cost = terms or list(problem.cost)
-    return MotionProgram(replace(problem, cost=cost, budgets=[*terms, *keep]))
+    cost = [budget for budget, over in zip(problem.budgets, exceeded, strict=True) if over]
+    return MotionProgram(replace(problem, cost=cost, ground=None))
 
 
 class _Wrapped:
-    """A program that shares its limits and its systems with another."""
+    """A program that shares its limits and its systems with another.
 
-    def __init__(self, program: MotionProgram, shift: float) -> None:
+    Parameters
+    ----------
+    program : MotionProgram
+    shift : (j,) array
+        From which on each budget counts.
+    """
+
+    def __init__(self, program: MotionProgram, shift: Floats) -> None:
         self._program, self._shift = program, shift
         self.bounds = program.bounds
         self.linear, self.linear_change = program.linear, program.linear_change
@@ -111,12 +115,12 @@ class _Wrapped:
 
 
 class _Relaxed(_Wrapped):
-    """A program whose budgets and bounds count from a shift on."""
+    """A program whose budgets count from a shift on."""
 
     def values(self, x: Floats) -> Values:
         """Evaluate, shifted."""
         self._last = values = self._program.values(x)
-        return Values(values.cost, values.budgets - self._shift, values.local - self._shift)
+        return Values(values.cost, values.budgets - self._shift, values.local)
 
     def expand(
         self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
@@ -124,7 +128,6 @@ class _Relaxed(_Wrapped):
         """Expand, shifted."""
         expansion = self._program.expand(x, budget, local, stiffness, share)
         expansion.budgets = expansion.budgets - self._shift
-        expansion.local = expansion.local - self._shift
         return expansion
 
     def system(
@@ -175,7 +178,9 @@ class _Penalised(_Wrapped):
 class _PenaltyExpansion:
     """The expansion of a penalised program."""
 
-    def __init__(self, inner: MotionExpansion, penalty: float, slope: Floats, shift: float) -> None:
+    def __init__(
+        self, inner: MotionExpansion, penalty: float, slope: Floats, shift: Floats
+    ) -> None:
         self.inner = inner
         self.cost = inner.cost + penalty
         self.budgets = inner.budgets - shift

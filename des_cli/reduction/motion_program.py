@@ -78,7 +78,7 @@ class MotionProblem:
         Control points of the executable motion that deviations are added to [rad].
     forms : SeatForms
         Of the seat as the profile fixes it.
-    cost : sequence of Term
+    cost : sequence of Term or JointBudget
         Summed up.
     ground : GroundCross, optional
         A further cost, of the cross-coupling in ground axes.
@@ -96,7 +96,7 @@ class MotionProblem:
     grid: SplineGrid
     base: Floats
     forms: SeatForms
-    cost: Sequence[Term]
+    cost: Sequence[Term | JointBudget]
     budgets: Sequence[Term | JointBudget]
     rows: LimitRows
     ends: Ends
@@ -129,7 +129,6 @@ class MotionProgram:
             self.ground.gather(problem.base, *span) if problem.ground else np.zeros((0, 0))
             for span in self.chunks
         ]
-        self._last: tuple[Floats, list[SeatMotion]] | None = None
         self.bounds = problem.rows.bounds
         self.free_angles = problem.seat.count if problem.seat else 0
         self._per_jerk = np.broadcast_to(
@@ -138,7 +137,7 @@ class MotionProgram:
         self._smooth = SymmetricBand(grid.points, JOINTS)
         self._smooth.add_differences(self._per_jerk, 3, grid.step)
         self._mass = SymmetricBand(grid.points, JOINTS)
-        if any(isinstance(budget, JointBudget) for budget in problem.budgets):
+        if any(isinstance(each, JointBudget) for each in (*problem.cost, *problem.budgets)):
             weight = grid.basis(np.array(GAUSS), 0)
             for b in range(4):
                 for a in range(b, 4):
@@ -185,18 +184,12 @@ class MotionProgram:
         forms, _ = self._forms(x)
         cost, budgets = 0.0, np.zeros(len(problem.budgets))
         local: list[list[Floats]] = [[] for _ in problem.local]
-        self._last = (x, seats := self._seats(x, forms))
         for chunk, (first, last) in enumerate(self.chunks):
-            seat = seats[chunk]
+            seat = forms.at(self._base[chunk] + self.windows.gather(control, first, last))
             at = slice(POINTS * first, POINTS * last)
-            for term in problem.cost:
-                cost += _square(term.residual(seat, at))
+            cost += sum(self._value(t, seat, control, first, last) for t in problem.cost)
             for j, budget in enumerate(problem.budgets):
-                if isinstance(budget, Term):
-                    budgets[j] += _square(budget.residual(seat, at))
-                else:
-                    off = budget.off[:, at] + self.angles.gather(control, first, last)
-                    budgets[j] += budget.scale * _square(off)
+                budgets[j] += self._value(budget, seat, control, first, last)
             if problem.ground:
                 z = self._base_ground[chunk] + self.ground.gather(control, first, last)
                 cost += _square(problem.ground.residual(z))
@@ -216,23 +209,13 @@ class MotionProgram:
         total = MotionExpansion.zero(self, len(problem.budgets))
         total.band.data += self._smooth.data
         found: list[list[Floats]] = [[] for _ in problem.local]
-        # a line search has evaluated what it accepts
-        known = self._last is not None and np.array_equal(self._last[0], x)
-        seats = self._last[1] if self._last and known else self._seats(x, forms)
-        self._last = None
         for chunk, (first, last) in enumerate(self.chunks):
-            seat = seats[chunk]
+            seat = forms.at(self._base[chunk] + self.windows.gather(control, first, last))
             local_at = _Chunk(self, total, seat, turns, share, first, last)
             for term in problem.cost:
-                total.cost += local_at.take(term, 1.0, total.gradient)
+                total.cost += local_at.take(term, 1.0, total.gradient, control)
             for j, each in enumerate(problem.budgets):
-                column = total.by_budget[j]
-                if isinstance(each, Term):
-                    total.budgets[j] += local_at.take(each, budget[j], column)
-                else:
-                    off = each.off[:, local_at.at] + self.angles.gather(control, first, last)
-                    total.budgets[j] += each.scale * _square(off)
-                    self.angles.scatter(2.0 * each.scale * off, first, self.control(column))
+                total.budgets[j] += local_at.take(each, budget[j], total.by_budget[j], control)
             if problem.ground:
                 total.cost += self._take_ground(problem.ground, chunk, control, share, total)
             if problem.local:
@@ -243,9 +226,10 @@ class MotionProgram:
                         local_at.bind(bound, angles, rows, local[rows], stiffness[rows])
                     )
             local_at.finish()
-        for j, each in enumerate(problem.budgets):
+        factors = [*np.ones(len(problem.cost)), *budget]
+        for each, factor in zip([*problem.cost, *problem.budgets], factors, strict=True):
             if isinstance(each, JointBudget):
-                total.band.data += (2.0 * each.scale * budget[j]) * self._mass.data
+                total.band.data += (2.0 * each.scale * factor) * self._mass.data
         jerk = problem.grid.differences(control, 3)
         total.cost += self._smoothness(control) + self._seat_cost(x)
         of_motion = self.control(total.gradient)
@@ -261,6 +245,19 @@ class MotionProgram:
     ) -> MotionSystem | None:
         """Factorise over the free unknowns."""
         return factorise(expansion, self.problem.rows, self.problem.ends, stiffness, shift)
+
+    def off(self, budget: JointBudget, control: Floats, first: int, last: int) -> Floats:
+        """Return how far the angles are from the reference at points, (3, m) [rad]."""
+        moved = self.angles.gather(control, first, last)
+        return np.asarray(budget.off[:, POINTS * first : POINTS * last] + moved)
+
+    def _value(
+        self, term: Term | JointBudget, seat: SeatMotion, control: Floats, first: int, last: int
+    ) -> float:
+        """Return what a term or budget is on a chunk."""
+        if isinstance(term, JointBudget):
+            return term.scale * _square(self.off(term, control, first, last))
+        return _square(term.residual(seat, slice(POINTS * first, POINTS * last)))
 
     def _take_ground(
         self,
@@ -286,14 +283,6 @@ class MotionProgram:
         if self.problem.seat is None:
             return self.problem.forms, ()
         return self.problem.seat.at(self.seat_angles(x))
-
-    def _seats(self, x: Floats, forms: SeatForms) -> list[SeatMotion]:
-        """Return the seat's motion on every chunk."""
-        control = self.control(x)
-        return [
-            forms.at(base + self.windows.gather(control, *span))
-            for span, base in zip(self.chunks, self._base, strict=True)
-        ]
 
     def _angles_of(self, chunk: int, control: Floats) -> Floats:
         """Return the joint angles at a chunk's points, if a bound needs them."""
@@ -336,7 +325,8 @@ class _Chunk:
         last: int,
     ) -> None:
         self.program, self.total, self.seat, self.share = program, total, seat, share
-        self.first, self.at = first, slice(POINTS * first, POINTS * last)
+        self.first, self.last = first, last
+        self.at = slice(POINTS * first, POINTS * last)
         self.turns = turns
         self.turned = [turn.of(seat) for turn in turns]
         self.slopes: list[Floats] = []  # by the variables, scaled
@@ -344,9 +334,16 @@ class _Chunk:
         self.multipliers: dict[Quantity, Floats] = {}
         self.further = np.zeros((VARIABLES * (VARIABLES + 1) // 2, seat.rate.shape[1]))
 
-    def take(self, term: Term, factor: float, gradient: Floats) -> float:
+    def take(
+        self, term: Term | JointBudget, factor: float, gradient: Floats, control: Floats
+    ) -> float:
         """Add a term times a factor; return its value."""
         program, seat = self.program, self.seat
+        if isinstance(term, JointBudget):  # its Hessian is constant, and added at the end
+            off = program.off(term, control, self.first, self.last)
+            into = program.control(gradient)
+            program.angles.scatter(2.0 * term.scale * off, self.first, into)
+            return term.scale * _square(off)
         residual = term.residual(seat, self.at)
         slope = term.slope(seat)
         by_variable = np.zeros((VARIABLES, residual.shape[1]))

@@ -17,8 +17,9 @@ The method is the primal-dual barrier method of Fiacco and McCormick with Newton
 
 - A budget's barrier has the weight of many rows (``BUDGET_WEIGHT``). One row among ten
   thousand would let the budget collapse first, and the path would follow its boundary.
-- A budget's boundary is curved. Where a full step would leave it, the step is bent back
-  along H^-1 grad g, until g meets its linear prediction (second-order correction).
+- The boundary of a budget, or of a local bound, is curved. Where a full step would overrun
+  it, the step is bent back, along H^-1 grad g for a budget, until it meets its linear
+  prediction (second-order correction). Without that, a slack of 1e-8 halves every step.
 - The Hessian is exact where that is positive definite; else its curvature part, which
   alone can be indefinite, counts by a share that is halved until it is.
 - The fraction to the boundary does not follow the barrier, and a multiplier stays within
@@ -49,11 +50,12 @@ SPREAD = 1e2
 ARMIJO = 1e-4
 """Share of the predicted decrease that a step must bring."""
 
-LEAST_BUDGET_SLACK = 1e-3
+LEAST_SLACK = 1e-3
 """Share of a nonlinear slack that a step must leave."""
 
 OVERSHOOT = 0.1
-"""A budget that misses its linear prediction by this share of its slack is corrected."""
+"""A budget or a local bound that misses its linear prediction by this share of its slack is
+corrected."""
 
 SHORTEST_CORRECTED = 0.05
 """Shortest first step that is worth a second-order correction."""
@@ -394,7 +396,8 @@ class _Search(Generic[E]):
         dual_length = min(
             _longest(self.dual, dual_step), _longest(self.budget_dual, budget_dual_step)
         )
-        if not self._search(border, step, slope, budget_change, longest):
+        path = _Path(expansion, border, step, budget_change)
+        if not self._search(path, slope, longest):
             return False
         self.dual = self.dual + dual_length * dual_step
         self.budget_dual = self.budget_dual + dual_length * budget_dual_step
@@ -413,27 +416,20 @@ class _Search(Generic[E]):
         barrier = float(np.sum(np.log(slack)) + self.weight * np.sum(np.log(budget_slack)))
         return cost - self.mu * barrier
 
-    def _search(
-        self,
-        border: _Border,
-        step: Floats,
-        slope: float,
-        budget_change: Floats,
-        longest: float,
-    ) -> bool:
-        """Search along a step, bent back where it would overrun a budget."""
+    def _search(self, path: _Path, slope: float, longest: float) -> bool:
+        """Search along a step, bent back where it would overrun a curved boundary."""
         program, m = self.program, self.m
         merit = self._merit(self.at.cost, self.slack, self.budget_slack)
         noise = 1e-13 * abs(merit) + 1e-14
-        length, bend = longest, None
+        length = longest
+        bend: Floats | None = None
         for trial in range(HALVINGS):
-            move = length * step if bend is None else length * step + length**2 * bend
+            move = length * path.step if bend is None else length * path.step + length**2 * bend
             at = program.values(self.x + move)
             if trial == 0 and length > SHORTEST_CORRECTED:
-                missed = np.maximum(at.budgets - (self.at.budgets - length * budget_change), 0.0)
-                if np.any(missed > OVERSHOOT * self.budget_slack):
-                    bend = border.correction(missed) / length**2
-                    move = length * step + length**2 * bend
+                bend = self._bend(path, length, at)
+                if bend is not None:
+                    move = length * path.step + length**2 * bend
                     at = program.values(self.x + move)
             budget_slack = 1.0 - at.budgets
             rows = program.linear_change(move)
@@ -441,9 +437,9 @@ class _Search(Generic[E]):
                 [self.slack[:m] - rows, self.slack[m : 2 * m] + rows, 1.0 - at.local]
             )
             inside = (
-                bool(np.all(budget_slack > LEAST_BUDGET_SLACK * self.budget_slack))
+                bool(np.all(budget_slack > LEAST_SLACK * self.budget_slack))
                 and bool(np.all(slack[: 2 * m] > 0.0))
-                and bool(np.all(slack[2 * m :] > LEAST_BUDGET_SLACK * self.slack[2 * m :]))
+                and bool(np.all(slack[2 * m :] > LEAST_SLACK * self.slack[2 * m :]))
             )
             if inside:
                 reached = self._merit(at.cost, slack, budget_slack)
@@ -456,6 +452,32 @@ class _Search(Generic[E]):
             if trial == 1:
                 bend = None  # a shorter step follows the boundary by itself
         return False
+
+    def _bend(self, path: _Path, length: float, at: Values) -> Floats | None:
+        """Return the second-order correction of a step that misses its linear predictions."""
+        local_slack = self.slack[2 * self.m :]
+        predicted = self.at.budgets - length * path.budget_change
+        missed = np.maximum(at.budgets - predicted, 0.0)
+        local = np.maximum(at.local - (self.at.local + length * path.local_change), 0.0)
+        bend: Floats | None = None
+        if np.any(local > OVERSHOOT * local_slack):
+            push = self.dual[2 * self.m :] / local_slack * local
+            bend = -path.border.solve(path.expansion.local_adjoint(push)) / length**2
+        if np.any(missed > OVERSHOOT * self.budget_slack):
+            back = path.border.correction(missed) / length**2
+            bend = back if bend is None else bend + back
+        return bend
+
+
+class _Path:
+    """A step, and what the linearised functions say along it."""
+
+    def __init__(
+        self, expansion: Expansion, border: _Border, step: Floats, budget_change: Floats
+    ) -> None:
+        self.expansion, self.border, self.step = expansion, border, step
+        self.budget_change = budget_change  # of the budgets' slacks
+        self.local_change = expansion.local_change(step)
 
 
 class _Border:
