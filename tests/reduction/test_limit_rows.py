@@ -41,7 +41,9 @@ def control(rng):
 
 
 def rows_of(limits=LIMITS, ends=FREE, base=None, **further):
-    return LimitRows(GRID, np.zeros((GRID.points, 3)) if base is None else base, limits, ends, **further)
+    return LimitRows(
+        GRID, np.zeros((GRID.points, 3)) if base is None else base, limits, ends, **further
+    )
 
 
 def largest_share(rows, deviation):
