@@ -54,7 +54,7 @@ def largest_share(rows, deviation):
 def sampled_share(control, name):
     """The same of the spline on a fine grid."""
     order = NAMES.index(name)
-    t = np.linspace(GRID.start, GRID.start + GRID.duration, 9 * 200 + 1)
+    t = np.linspace(GRID.start, GRID.start + GRID.duration, 9 * 60 + 1)
     value = np.abs(GRID.values(control, t, order)).max(axis=0)
     return np.max(value / [getattr(limit, name) for limit in LIMITS])
 
@@ -76,6 +76,19 @@ def test_rates_and_angles_lie_inside_their_hull(name, control):
             np.abs(np.diff(GRID.differences(scale * control, NAMES.index(name)), axis=0))
             / [getattr(limit, name) for limit in LIMITS]
         )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_interval_is_left_out(name):
+    """Splines that live on a few control points, at the ends too."""
+    rng, rows, exact = np.random.default_rng(9), rows_of(ALONE[name]), name in NAMES[2:]
+    for first in range(GRID.points - 3):
+        for _ in range(30):
+            control = np.zeros((GRID.points, 3))
+            control[first : first + 4] = rng.normal(size=(4, 3))
+            share, sampled = largest_share(rows, control), sampled_share(control, name)
+            assert share >= sampled * (1.0 - 1e-12)
+            assert not exact or share == pytest.approx(sampled, rel=1e-12)
 
 
 def test_a_motion_may_begin_as_fast_as_the_machine_may_turn():

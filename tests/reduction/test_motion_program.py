@@ -52,6 +52,13 @@ def _ground(**further):
     )
 
 
+def _heavy_seat():
+    """A weight on the seat's turn that matters."""
+    task = task_of(smooth(), MATCHED, optimise=("seat_yaw", "seat_pitch"))
+    problem = program_of(task).problem
+    return MotionProgram(replace(problem, seat=replace(problem.seat, weight=50.0)))
+
+
 PROGRAMS = {
     "coriolis": lambda: program_of(task_of(smooth(), {})),
     "felt": lambda: program_of(task_of(smooth(), {}, objective="felt")),
@@ -71,6 +78,7 @@ PROGRAMS = {
     "every bound": lambda: program_of(task_of(smooth(), {ATTITUDE: 25.0}, BOUNDED)),
     "ground": _ground,
     "seat": lambda: program_of(task_of(smooth(), ALL_BUDGETS, optimise=("seat_yaw", "seat_pitch"))),
+    "heavy seat": _heavy_seat,
     "pitch": lambda: program_of(
         task_of(smooth(), MATCHED, optimise=("seat_pitch", "cab_start"), objective="felt")
     ),
