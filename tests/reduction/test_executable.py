@@ -242,12 +242,7 @@ def test_a_table_plays_its_rates(cobra):
 @pytest.mark.parametrize(
     "intervals",
     [
-        pytest.param(
-            20,
-            marks=pytest.mark.xfail(
-                strict=True, reason="a coarse table's trapezoids leave the spline's angles"
-            ),
-        ),
+        20,
         160,
     ],
 )

@@ -103,7 +103,6 @@ def test_what_is_nearly_spent_gets_room():
     assert worst(program, found) < 1.0 - ROOM
 
 
-@pytest.mark.xfail(strict=True, reason="the search hardly moves: its cost outweighs its barrier")
 @pytest.mark.parametrize("gy", [-0.65, -0.5])
 def test_a_bound_that_a_simple_motion_keeps(gy):
     bounded = replace(DES, occupant=OccupantBounds(gy=(gy, 0.5)))

@@ -221,7 +221,6 @@ def test_a_budget_and_limits_together():
     np.testing.assert_allclose(outcome.x, [0.3, np.sqrt(1.0 - 0.09)], atol=1e-6)
 
 
-@pytest.mark.xfail(raises=RuntimeWarning, strict=True, reason="it corrects by a zero gradient")
 def test_a_start_at_the_least_value_of_a_budget():
     program = boxed(
         quadratic(np.zeros((2, 2)), [-1.0, -1.0]), 10.0, 2, budgets=(disc(np.zeros(2)),)
