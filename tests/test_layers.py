@@ -14,6 +14,7 @@ LAYERS = (
     ("model",),
     ("kinematics",),
     ("reduction",),
+    ("verify",),
     ("results", "metrics", "notices", "pipeline", "tradeoff"),
     ("files", "plots", "report"),
     ("failure", "job", "pool", "batch", "sweep"),
