@@ -33,6 +33,8 @@ class Claim:
     posed : Problem, optional
         The problem of factors on the desired rates, as it was solved, along ``desired``;
         None of a free motion.
+    commands : Motion, optional
+        The motion of the command table, where it has leads before and after.
     """
 
     profile: Profile
@@ -41,6 +43,7 @@ class Claim:
     seat: Seat
     solution: Solution
     posed: Problem | None = None
+    commands: Motion | None = None
 
     @property
     def reduction(self) -> Reduction:
@@ -51,6 +54,11 @@ class Claim:
     def modified(self) -> Motion:
         """The motion that is checked."""
         return self.solution.modified
+
+    @property
+    def table(self) -> Motion:
+        """What the machine is to play: the modified motion with its leads."""
+        return self.modified if self.commands is None else self.commands
 
     @property
     def enforced(self) -> bool:

@@ -21,10 +21,10 @@ RATE_ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
 
 
 def check_limits(claim: Claim) -> list[Check]:
-    """Measure the modified motion against every limit, as the relative excess."""
+    """Measure the table against every limit, as the relative excess."""
     if not claim.enforced:
         return []
-    motion = claim.modified
+    motion = claim.table
     found = magnitudes(motion)
     found["jerk"] = np.maximum(found["jerk"] - _jerk_rounding(motion), 0.0)
     checks = []

@@ -26,6 +26,7 @@ from des_cli.verify.ends import (
     check_integral,
     check_times,
 )
+from des_cli.verify.leads import check_leads
 from des_cli.verify.limits import check_limits
 from des_cli.verify.occupant import check_occupant
 from des_cli.verify.study_optimality import check_optimality
@@ -38,6 +39,7 @@ def verify(
     seat: Seat,
     solution: Solution,
     posed: Problem | None = None,
+    commands: Motion | None = None,
 ) -> tuple[Check, ...]:
     """Check a solution.
 
@@ -55,6 +57,8 @@ def verify(
     posed : Problem, optional
         The problem of factors on the desired rates, as it was solved; None of a free
         motion, and of one per joint with budgets, which is found as a free one.
+    commands : Motion, optional
+        What the command table plays, where that is the modified motion with leads.
 
     Returns
     -------
@@ -64,24 +68,28 @@ def verify(
     """
     if posed is not None:
         desired = posed.desired
-    claim = Claim(profile, asked, desired, seat, solution, posed)
-    first = [_finite(solution)]
+    claim = Claim(profile, asked, desired, seat, solution, posed, commands)
+    first = [_finite(solution, claim.table)]
     if first[0].ok:
         first.append(check_times(claim))
     if not all(check.ok for check in first):
         return tuple(first)
     own = _of_free(claim) if posed is None else _of_factors(claim, posed)
-    return (*first, *check_limits(claim), *check_ends(claim), *check_hold(claim), *own)
+    return (
+        *first,
+        *check_limits(claim),
+        *check_leads(claim),
+        *check_ends(claim),
+        *check_hold(claim),
+        *own,
+    )
 
 
-def _finite(solution: Solution) -> Check:
+def _finite(solution: Solution, table: Motion) -> Check:
     """Count the values that are not finite."""
-    modified = solution.modified
+    motions = (solution.modified, table)
     numbers = (
-        modified.t,
-        modified.angle,
-        modified.rate_start,
-        modified.rate_end,
+        *(v for m in motions for v in (m.t, m.angle, m.rate_start, m.rate_end)),
         solution.control,
         solution.adjoint,
         np.array([solution.cost, solution.cost_unreduced]),
@@ -92,7 +100,7 @@ def _finite(solution: Solution) -> Check:
 
 def _of_free(claim: Claim) -> list[Check]:
     return [
-        check_integral(claim.modified),
+        check_integral(claim.table),
         *check_factors(claim),
         *_occupant(claim),
         *check_budgets(claim),

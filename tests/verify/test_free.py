@@ -40,7 +40,9 @@ class Case:
         self.desired, self.seat, self.solution = found.desired, found.seat, found.solution
         assert self.solution.converged
 
-    def checks(self, solution=None, *, asked=None, machine=None, seat=None, **options):
+    def checks(
+        self, solution=None, *, asked=None, machine=None, seat=None, commands=None, **options
+    ):
         profile = replace(
             self.profile,
             machine=machine or self.profile.machine,
@@ -52,6 +54,7 @@ class Case:
             self.desired,
             seat or self.seat,
             solution or self.solution,
+            commands=commands,
         )
 
     def failed(self, solution=None, **changes):
@@ -365,6 +368,43 @@ def test_onset_and_angular_acceleration_beyond_their_bounds(case):
             ),
         ):
             assert (key in case.failed(machine=replace(DES, occupant=bounds))) is broken
+
+
+def led(motion, seconds, last=0.0):
+    """A motion that comes from rest in so many seconds, with the cosine's rates, (n, 3)."""
+    t = np.concatenate([motion.t[0] - seconds + np.arange(0.0, seconds, 0.04), motion.t])
+    share = 0.5 - 0.5 * np.cos(np.pi * (t - t[0])[:, None] / seconds)
+    count = len(t) - len(motion.t)
+    rate = np.vstack([motion.rate_start[0] * share[:count] + last, motion.rate])
+    found = with_rates(t, np.zeros(3), rate)
+    angle = found.angle + (motion.angle[0] - found.angle[count])
+    angle[count:] = motion.angle
+    return replace(found, angle=angle)
+
+
+def test_a_table_with_a_lead(case):
+    motion, lead = case.solution.modified, {"lead_in": 4.0, "limits": "warn"}
+    assert case.failed(commands=led(motion, 4.0), **lead) == set()
+    # faster than the machine may, though the maneuver itself is not
+    failed = case.failed(commands=led(motion, 0.4), lead_in=0.4)
+    assert {"limits.arm.acceleration", "limits.arm.jerk"} <= failed
+    assert all(key.startswith("limits.") for key in failed)
+    assert case.failed(commands=led(motion, 4.0), lead_in=5.0, limits="warn") == {"leads.length"}
+    assert case.failed(commands=led(motion, 4.0, last=2e-9), **lead) == {"leads.rest"}
+    table = led(motion, 4.0)
+    angle = table.angle.copy()
+    angle[150:, 0] += 1e-8
+    failed = case.failed(commands=replace(table, angle=angle), **lead)
+    assert failed == {"leads.maneuver", "dynamics.angles"}
+    cut = led(replace_end(motion), 4.0)
+    assert "leads.maneuver" in case.failed(commands=cut, **lead)
+    angle[3, 1] = np.nan
+    assert case.failed(commands=replace(table, angle=angle), **lead) == {"finite"}
+
+
+def replace_end(motion):
+    """The motion without its last interval."""
+    return Motion(motion.t[:-1], motion.angle[:-1], motion.rate_start[:-1], motion.rate_end[:-1])
 
 
 def test_costs_that_are_off(case):
