@@ -26,6 +26,10 @@ TIGHT = 1e-2
 """Distance from a limit, relative, within which it may hold the motion. A limit acts on
 control points and between them: at the samples a little is left of one that holds."""
 
+COARSE_STEP, MOST_TIGHT = 0.01, 0.3
+"""Mean step [s] from which a table differs from the smooth motion that it samples, with the
+step squared; so does the distance from a bound at samples within which it may hold."""
+
 GUARD = 0.04
 """Time [s] by which a window keeps away from a limit that may hold: a limit on a control
 point of a spline holds what is beside it."""
@@ -101,6 +105,11 @@ def find_directions(claim: Claim) -> list[Direction]:
     return found
 
 
+def coarseness(claim: Claim) -> float:
+    """Return the square of the mean step over one that is coarse, or one."""
+    return max(1.0, (float(np.mean(claim.modified.step)) / COARSE_STEP) ** 2)
+
+
 def _direction(t: Floats, joint: int, shape: str, first: int, last: int) -> Direction:
     """Return a direction over the samples first to last."""
     time = t[first : last + 1]
@@ -131,17 +140,18 @@ def _integral(t: Floats, rate: Floats) -> Floats:
 def _free(claim: Claim) -> Flags:
     """Return the samples at which nothing holds a joint, (n, 3)."""
     n = len(claim.modified.t)
+    near = min(TIGHT * coarseness(claim), MOST_TIGHT)
     free = np.ones((n, len(JOINTS)), dtype=bool)
     if claim.enforced:
         for quantity, values in magnitudes(claim.modified).items():
             bound = np.array([getattr(limit, quantity) for limit in claim.profile.machine.limits])
             free &= values < (1.0 - TIGHT) * bound
         for _, _, excess in excesses(claim.profile.machine.occupant, claim.modified, claim.after):
-            free &= _at_samples(excess < -TIGHT)[:, None]
+            free &= _at_samples(excess < -near)[:, None]
     for budget in claim.reduction.budget:
         if budget.metric in AT_SAMPLES:
             values = at_states(claim, budget.metric, claim.after)
-            free &= _at_samples(values < (1.0 - TIGHT) * budget.most)[:, None]
+            free &= _at_samples(values < (1.0 - near) * budget.most)[:, None]
     if claim.reduction.control == "per-joint":
         free &= _moving(claim.desired.rate)
     return _guarded(claim.modified.t, free)

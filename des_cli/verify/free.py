@@ -20,7 +20,7 @@ from des_cli.model.profile import Reduction
 from des_cli.model.run import Check
 from des_cli.verify.budgets import integrand, keeps_budgets, spent_budgets
 from des_cli.verify.claim import Claim
-from des_cli.verify.directions import find_directions
+from des_cli.verify.directions import coarseness, find_directions
 from des_cli.verify.felt import Felt
 from des_cli.verify.multipliers import least_residual
 from des_cli.verify.occupant import check_occupant
@@ -33,12 +33,13 @@ STILL = 1e-9
 """Mean square of the weighted cross-coupling [rad^2/s^4] that costs are relative to at the
 least: a maneuver without any costs nothing, and rounding is no error of it."""
 
-OPTIMALITY_TOLERANCE, COARSE_STEP, MOST_TOLERANCE = 2e-2, 0.02, 0.25
-"""Slope that may be left, relative to the desired motion's: of all directions together, in
-the root of the sum of squares. A method minimises over smooth motions, with a little weight
-on their jerk, and its table is these in steps. Measured on optima of the built-in maneuvers
-it is 2e-5 to 5e-3, and 0.02 to 0.08 where the steps are 0.1 s; a motion that leaves half of
-its budgets has 0.7 to 1. Beyond COARSE_STEP [s] the tolerance grows with the step squared."""
+OPTIMALITY_TOLERANCE, MOST_TOLERANCE = 2e-2, 0.25
+"""Slope that may be left, relative to the desired motion's or the solution's own: of all
+directions together, in the root of the sum of squares. A method minimises over smooth
+motions, with a little weight on their jerk, and its table is these in steps. Measured on
+optima of the built-in maneuvers it is 2e-5 to 5e-3, and 0.01 to 0.08 where the steps are
+0.1 s; a motion that leaves half of its budgets has 0.7 to 1. With coarse steps the
+tolerance grows, to MOST_TOLERANCE: of a hundred random maneuvers one had 0.11 at 27 ms."""
 
 BLEND = 0.1
 """Weight of the felt error in the objective ``blend``."""
@@ -72,7 +73,13 @@ def check_cost(claim: Claim) -> list[Check]:
 
 
 def check_optimality(claim: Claim) -> list[Check]:
-    """Test the first-order conditions; nothing is tested where limits hold everything."""
+    """Test the first-order conditions.
+
+    Nothing is tested where limits hold everything, nor where there was no cross-coupling
+    to reduce: such a maneuver is passed through.
+    """
+    if claim.weight @ _weighted(claim.reduction, claim.before) <= STILL * claim.duration:
+        return []
     functions: list[Running] = [lambda felt, before: _objective(claim.reduction, felt, before)]
     functions += [partial(integrand, budget.metric) for budget in spent_budgets(claim)]
     directions = find_directions(claim)
@@ -86,7 +93,7 @@ def check_optimality(claim: Claim) -> list[Check]:
     if not len(slopes):
         return []
     residual = least_residual(slopes[:, 0], slopes[:, 1:])
-    size = max(float(np.linalg.norm(scales)), STILL * claim.duration)
+    size = max(*np.linalg.norm([scales[:, 0], slopes[:, 0]], axis=1), STILL * claim.duration)
     value = float(np.linalg.norm(residual)) / size
     name = "slope of the objective at the optimum, relative to the desired motion's"
     return [Check("optimality", name, value, _tolerance(claim))]
@@ -94,8 +101,7 @@ def check_optimality(claim: Claim) -> list[Check]:
 
 def _tolerance(claim: Claim) -> float:
     """Return the slope that may be left at the steps of the table."""
-    coarse = float(np.mean(claim.modified.step)) / COARSE_STEP
-    return min(OPTIMALITY_TOLERANCE * max(1.0, coarse**2), MOST_TOLERANCE)
+    return min(OPTIMALITY_TOLERANCE * coarseness(claim), MOST_TOLERANCE)
 
 
 def _desired_is_allowed(claim: Claim) -> bool:

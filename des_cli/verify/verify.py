@@ -100,7 +100,7 @@ def _finite(solution: Solution, table: Motion) -> Check:
 
 def _of_free(claim: Claim) -> list[Check]:
     return [
-        check_integral(claim.table),
+        check_integral(claim),
         *check_factors(claim),
         *_occupant(claim),
         *check_budgets(claim),

@@ -209,6 +209,16 @@ def test_limits_that_are_smaller(case, quantity, share):
         assert failed <= {f"limits.fork.{quantity}"}
 
 
+def test_a_motion_that_is_passed_through_keeps_its_angles(case):
+    # its positions are more than the integrals of its rates
+    passed = replace(case.solution, modified=case.asked)
+    assert "dynamics.angles" not in case.failed(passed)
+    angle = case.asked.angle.copy()
+    angle[-1, 2] += 1e-9
+    other = replace(case.solution, modified=replace(case.asked, angle=angle))
+    assert "dynamics.angles" in case.failed(other)
+
+
 def test_an_angle_that_is_exceeded_only_between_two_samples(case):
     # the fork turns back half-way between two samples: the parabola's top is between them
     t = np.arange(0.0, 1.01, 0.1)
@@ -462,11 +472,12 @@ def test_the_optimum_of_another_objective(case):
     assert felt.failed(case.solution) == {"optimality"}
 
 
-def test_the_optimum_of_other_weights(case):
-    r1 = np.diag([2.0, 6.0, 2.0])
-    other = Case(r1=r1)
+def test_the_optimum_of_other_weights_on_a_fine_table():
+    r1, fine = np.diag([2.0, 3.0, 2.0]), make_cobra(1000)
+    case, other = Case(asked=fine), Case(asked=fine, r1=r1)
     assert other.failed() == set()
     assert "optimality" in case.failed(r1=r1)
+    assert "optimality" in other.failed(r1=case.profile.reduction.r1)
 
 
 def test_the_optimum_of_another_seat():
@@ -487,5 +498,6 @@ def test_budgets_on_a_table_whose_positions_jump():
 def test_a_maneuver_without_cross_coupling_passes():
     t = np.linspace(0.0, 6.0, 151)
     rate = np.stack([0.5 + 0.2 * np.sin(t), 0.0 * t, 0.0 * t], axis=1)
-    case = Case(asked=with_rates(t, np.zeros(3), rate))
-    assert case.failed() == set()
+    for objective in ("coriolis", "blend"):
+        case = Case(asked=with_rates(t, np.zeros(3), rate), objective=objective)
+        assert case.failed() == set()
