@@ -110,7 +110,7 @@ def synthetic_run() -> Callable[..., Run]:
             ),
             before=before,
             after=after,
-            checks=(Check("dynamics", 1e-14, 1e-9),),
+            checks=(Check("dynamics.angles", "gap of the angles", 1e-14, 1e-9),),
             violations=(),
             metrics=metrics,
         )

@@ -5,22 +5,24 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.profile import Reduction
 from des_cli.reduction.baseline import joint_deviation
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.limits import find_violations
 from des_cli.reduction.search import Search
-from des_cli.reduction.verify import coriolis_by_complex_step, verify
 from des_cli.reduction.zero import find_zero, pose_zero
+from des_cli.verify.felt import SeatChain
+from des_cli.verify.study import cross_of
+from tests.support.claims import failed_of_factors
 
 BB3 = np.array([False, True, False])
 
 
 def largest(problem, motion, chosen):
-    """The largest component that was to vanish, at samples, by a complex step."""
-    c = coriolis_by_complex_step(problem, motion.angle_sides, motion.rate_sides)
-    return np.abs(c[..., chosen]).max()
+    """The largest component that was to vanish, at samples, by the verification's way."""
+    return np.abs(cross_of(problem, SeatChain(DES, Seat()).along(motion))[chosen]).max()
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +39,7 @@ def test_one_component_per_joint_inside_the_limits(executable, pose):
     assert joint_deviation(executable, solution.modified) ** 2 <= 0.02
     assert find_violations(DES, solution.modified, "modified") == ()
     wanted = Reduction(method="zero", r1=np.diag([0, 2, 0]), axes="report", tolerance=1e-3)
-    assert [check.name for check in verify(problem, solution, wanted) if not check.ok] == []
+    assert failed_of_factors(problem, solution, wanted) == []
 
 
 def test_the_whole_vector_per_joint(executable, pose):
