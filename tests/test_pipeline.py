@@ -14,7 +14,12 @@ from des_cli.model.run import Check
 from des_cli.pipeline import reduce_profile
 
 STUDY = Reduction(
-    control="scalar", axes="report", r1=np.diag([0.0, 2.0, 0.0]), limits="warn", budget=()
+    control="scalar",
+    axes="report",
+    r1=np.diag([0.0, 2.0, 0.0]),
+    limits="warn",
+    ends="free",
+    budget=(),
 )
 
 

@@ -57,6 +57,10 @@ class Rows(Protocol):
     def add_to(self, band: SymmetricBand, stiffness: Floats) -> None:
         """Add ``rows' diag(stiffness) rows`` to a band."""
 
+HOPELESS = 1e60
+"""Relative size of a multiplier, or of the inverse of a slack, beyond which nothing can be
+inside: both would grow until they overflow."""
+
 
 @dataclass(frozen=True)
 class QuadraticOutcome:
@@ -109,6 +113,10 @@ class _Search:
         dual = 1e-2 * self.size / len(slack) / slack
         iterations, before = 0, np.inf
         while iterations < MAX_ITERATIONS:
+            if np.min(slack / bounds) * HOPELESS < 1.0 or np.max(dual * bounds) > (
+                HOPELESS * self.size
+            ):
+                break
             local = _Local(self, slack, dual)
             off = float(np.max(np.abs(local.missing) / bounds, initial=0.0))
             optimal = local.residual < OPTIMAL and local.gap < OPTIMAL * self.size

@@ -30,14 +30,18 @@ def executable(cobra):
     return nearest_executable(DES, cobra(250))[0]
 
 
-def test_one_component_per_joint_inside_the_limits(executable, pose):
-    problem = pose_zero(pose(executable, 1.0, control="per-joint", r1=(0, 2, 0), machine=DES))
+@pytest.mark.parametrize("jerk", [False, True])
+def test_one_component_per_joint_inside_the_limits(cobra, pose, table_1, jerk):
+    machine = DES if jerk else table_1
+    executable, _ = nearest_executable(machine, cobra(250))
+    problem = pose_zero(pose(executable, 1.0, control="per-joint", r1=(0, 2, 0), machine=machine))
     solution = find_zero(problem, BB3, 1e-3, Search(3000))
     assert solution.converged
     assert largest(problem, solution.modified, BB3) <= 1e-3
-    # An independent solution reached 1.8 % squared deviation.
-    assert joint_deviation(executable, solution.modified) ** 2 <= 0.02
-    assert find_violations(DES, solution.modified, "modified") == ()
+    # An independent solution reached 1.8 % squared deviation without a limit on the jerk.
+    deviation = joint_deviation(executable, solution.modified) ** 2
+    assert (deviation > 0.0181) if jerk else (deviation == pytest.approx(0.018, abs=1e-4))
+    assert find_violations(machine, solution.modified, "modified") == ()
     wanted = Reduction(method="zero", r1=np.diag([0, 2, 0]), axes="report", tolerance=1e-3)
     assert failed_of_factors(problem, solution, wanted) == []
 
