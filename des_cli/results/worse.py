@@ -15,8 +15,11 @@ from des_cli.model.machine import JOINTS
 from des_cli.results.reading import lookup, number
 
 SHARE = 0.05
-"""Relative growth of the total angular acceleration, rms or peak, or of the G onset that is
-told: a twentieth is what two runs of one maneuver may differ by on a machine."""
+"""Relative growth of the total angular acceleration's rms, or of the G onset, that is told:
+a twentieth is what two runs of one maneuver may differ by on a machine."""
+
+PEAK_SHARE = 0.1
+"""The same of the total angular acceleration's peak: one instant says less than a mean."""
 
 LEAST_ANGULAR_ACCELERATION = 0.01
 """Growth of it [rad/s^2] that is never told: about half a degree per second squared, at
@@ -96,18 +99,18 @@ def worse_paths(metrics: Mapping[str, Any]) -> frozenset[str]:
     return frozenset(path for each in find_worse(metrics) for path in each.paths)
 
 
-def _grew(before: float, after: float, least: float) -> bool:
-    return after - before > max(SHARE * before, least)
+def _grew(before: float, after: float, least: float, share: float = SHARE) -> bool:
+    return after - before > max(share * before, least)
 
 
 def _angular(metrics: Mapping[str, Any]) -> list[Worse]:
     texts, paths = [], []
-    for kind in ("rms", "peak"):
+    for kind, share in (("rms", SHARE), ("peak", PEAK_SHARE)):
         path = f"{_TOTAL}.{kind}_after_rad_s2"
         before, after = number(metrics, f"{_TOTAL}.{kind}_before_rad_s2"), number(metrics, path)
         if before is None or after is None:
             continue
-        if _grew(before, after, LEAST_ANGULAR_ACCELERATION):
+        if _grew(before, after, LEAST_ANGULAR_ACCELERATION, share):
             numbers = f"{before:.3g} -> {after:.3g} rad/s²"
             texts.append(f"{numbers} rms" if kind == "rms" else f"peak {numbers}")
             paths.append(path)
