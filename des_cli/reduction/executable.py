@@ -19,7 +19,7 @@ import numpy as np
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine
 from des_cli.model.motion import Motion
-from des_cli.reduction.limit_rows import LimitRows
+from des_cli.reduction.free.limit_rows import LimitRows
 from des_cli.reduction.limits import angle_magnitude, find_violations, measure_peaks
 from des_cli.reduction.reference import sample_motion
 from des_cli.solver.band import SymmetricBand
