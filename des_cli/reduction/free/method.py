@@ -98,8 +98,9 @@ LEAST_ROOM = 1e-4
 AGAIN = 0.2
 """Share by which more room is left to a bound than the table went beyond it."""
 
-LEFT = 0.999
-"""Share of the budget that binds which a table should spend, at least."""
+LEFT, BINDING = 0.999, 0.9
+"""Share of the budget that binds which a table should spend, at least, and below which no
+budget binds."""
 
 
 def find_free_motion(
@@ -141,12 +142,11 @@ class _Search:
         if missing := sorted(fixed - set(seat_turns(self.task.machine, self.task.seat))):
             why = f"the machine has no {' and no '.join(missing)} beyond its cab to be found"
             return self.answers.refused(self.task.reference, why)
-        grids = self._grids()
-        fits = [self._fit(grid) for grid in grids]
-        finest = fits[-1]
+        *coarse, finest = (self._fit(grid) for grid in self._grids())
         desired = self._desired(finest)
         if finest.trouble:
             return self.answers.refused(desired, finest.trouble)
+        fits = [*(fit for fit in coarse if not fit.trouble), finest]
         energy = cross_coupling(self.task, finest.grid)
         if energy <= NOTHING * finest.grid.duration:
             return self.answers.passed_through(desired)
@@ -305,14 +305,14 @@ class _Search:
             spent = {m: deviation.value(m) / most for m, most in allowed.items()}
             worst = max(spent.values(), default=TOUCHING)
             beyond = self._beyond(deviation, modified, seat)
-            spends = worst >= LEFT or attempt >= GENEROUS
+            spends = worst >= LEFT or worst < BINDING or attempt >= GENEROUS
             kept = worst <= TOUCHING and not beyond
             if (kept and spends) or attempt == SETTLINGS - 1:
                 break
             if beyond:
                 room = self.task.room + (1.0 + AGAIN) * beyond
                 self.task = replace(self.task, room=room)
-            factor = {m: (1.0 - 0.5 * ROOM) / share for m, share in spent.items()}
+            factor = {m: (1.0 - 0.5 * ROOM) / max(share, BINDING) for m, share in spent.items()}
             if worst <= TOUCHING:  # a budget that is not the binding one stays
                 factor = {m: f if spent[m] == worst else 1.0 for m, f in factor.items()}
             else:  # the table follows the spline with a delay: ask for a little more each time
