@@ -130,7 +130,8 @@ def _felt(metrics: dict[str, Any]) -> str:
     fidelity = metrics["fidelity"]
     budget = metrics["solver"].get("budget") or {}
     measures: tuple[MetricKey, ...] = ("seat_rate_deviation_relative", "seat_g_deviation_relative")
-    off = {key: fidelity[key] for key in measures if key not in budget and fidelity[key] >= FELT}
+    others = {key: fidelity[key] for key in measures if key not in budget}
+    off = {key: value for key, value in others.items() if value is not None and value >= FELT}
     if not _usable(metrics) or not off:
         return ""
     said = ", ".join(

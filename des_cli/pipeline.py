@@ -19,7 +19,7 @@ from des_cli.reduction.consistency import require_consistent
 from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion
-from des_cli.reduction.verify import verify
+from des_cli.verify.verify import verify
 
 
 def reduce_profile(
@@ -80,7 +80,7 @@ def reduce_profile(
         commands=led,
         before=before,
         after=after,
-        checks=_checks(profile, found),
+        checks=_checks(profile, asked.motion, found, led),
         violations=measured.violations,
         metrics=metrics,
         notices=tuple(metrics["notices"]),
@@ -99,7 +99,11 @@ def _with_leads(profile: Profile, found: Found) -> tuple[Found, Motion]:
     return found, led.motion
 
 
-def _checks(profile: Profile, found: Found) -> tuple[Check, ...]:
-    if not found.solution.usable or found.posed is None:
+def _checks(
+    profile: Profile, reference: Motion, found: Found, commands: Motion
+) -> tuple[Check, ...]:
+    if not found.solution.usable:
         return ()
-    return verify(found.posed, found.solution, profile.reduction)
+    return verify(
+        profile, reference, found.desired, found.seat, found.solution, found.posed, commands
+    )

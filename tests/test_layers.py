@@ -15,6 +15,7 @@ LAYERS = (
     ("kinematics",),
     ("solver", "study"),
     ("reduction",),
+    ("verify",),
     ("results", "metrics", "notices", "pipeline", "tradeoff"),
     ("files", "plots", "report"),
     ("failure", "job", "pool", "batch", "sweep"),

@@ -40,9 +40,9 @@ def area(image: Image.Image, color: tuple[int, int, int]) -> int:
     return int(np.all(np.asarray(image) == color, axis=-1).sum())
 
 
-@pytest.mark.parametrize("per_joint", [False, True])
-def test_every_figure_shows_its_curves(synthetic_run: MakeRun, per_joint: bool) -> None:
-    run = synthetic_run(101, per_joint=per_joint)
+@pytest.mark.parametrize("control", ["scalar", "per-joint"])
+def test_every_figure_shows_its_curves(synthetic_run: MakeRun, control: str) -> None:
+    run = synthetic_run(101, control=control)
     figures = draw_plots(trajectory_columns(run), run.metrics)
     assert list(figures) == list(CAPTIONS)
     widths = set()
@@ -76,7 +76,7 @@ def test_the_users_matplotlibrc_changes_nothing(synthetic_run: MakeRun) -> None:
 
 
 def test_a_figure_is_of_its_run(synthetic_run: MakeRun) -> None:
-    run, other = synthetic_run(), synthetic_run(per_joint=True)
+    run, other = synthetic_run(), synthetic_run(control="per-joint")
     ours = draw_plots(trajectory_columns(run), run.metrics)
     theirs = draw_plots(trajectory_columns(other), other.metrics)
     assert [name for name in ours if ours[name] == theirs[name]] == ["adjoint"]
@@ -103,11 +103,10 @@ def test_standing_budget_and_changes_are_on_the_figures_they_belong_to(
     assert {name for name in plain if plain[name] != changed[name]} == figures
 
 
-def test_a_motion_without_factors_has_no_figure_of_them(synthetic_run: MakeRun) -> None:
-    run = synthetic_run(11)
-    free = replace(run, solution=replace(run.solution, control=np.empty((11, 0))))
-    figures = draw_plots(trajectory_columns(free), run.metrics)
-    assert list(figures) == [name for name in CAPTIONS if name != "factor"]
+def test_a_free_motion_has_no_figure_of_factors_and_adjoint(synthetic_run: MakeRun) -> None:
+    run = synthetic_run(11, control="free")
+    figures = draw_plots(trajectory_columns(run), run.metrics)
+    assert list(figures) == [name for name in CAPTIONS if name not in ("factor", "adjoint")]
 
 
 def panel_of_limits(peak: float, limit: float | None) -> Any:

@@ -287,7 +287,10 @@ def _read_trajectory(path: Path, data: bytes) -> dict[str, Floats]:
     except (pa.ArrowException, OSError, ValueError, TypeError) as error:
         words = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise FileAccessError([Problem(str(path), f"cannot be read: {words}")]) from error
-    names = trajectory_names(1 if "p" in columns else 3)
+    # A free motion has neither factors nor an adjoint; one within budgets per joint has ratios.
+    factors = 1 if "p" in columns else 3 if any(name.startswith("p_") for name in columns) else 0
+    adjoint = factors == 1 or any(name.startswith("adjoint_") for name in columns)
+    names = trajectory_names(factors, adjoint=adjoint)
     absent = [name for name in names if name not in columns]
     if absent:
         raise FileAccessError([Problem(str(path), f"has no column {name}") for name in absent])

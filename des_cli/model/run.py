@@ -85,12 +85,16 @@ class Check:
 
     Parameters
     ----------
+    key : str
+        What it is called by programs, the same in every version: ``limits.arm.jerk``.
     name : str
+        What it is called in a sentence.
     value, tolerance : float
         The check holds where ``value <= tolerance``; a value that is not a
         number fails.
     """
 
+    key: str
     name: str
     value: float
     tolerance: float

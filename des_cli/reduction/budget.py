@@ -17,6 +17,7 @@ from des_cli.model.metric import METRICS, Budget
 from des_cli.model.solution import Solution
 from des_cli.reduction.attitude_rows import AttitudeRows
 from des_cli.reduction.coarse import grids, refine
+from des_cli.reduction.felt_measures import SeatAccelerationRows
 from des_cli.reduction.measures import measure_of
 from des_cli.reduction.optimum import FAR, NEAR, best_of, make_solution
 from des_cli.reduction.problem import Problem
@@ -85,6 +86,8 @@ def _with_budgets(problem: Problem, budgets: Sequence[Budget]) -> Transcription:
         most = budget.most * (1.0 - ROOM)
         if budget.metric == "attitude_error_max_deg":
             grid.rows.append(AttitudeRows(problem.chain, problem.reference.angle, most))
+        elif budget.metric == "seat_angular_acceleration_peak_ratio":
+            grid.rows.append(SeatAccelerationRows(grid, most))
         else:
             grid.budgets.append(measure_of(grid, budget.metric, most))
     return grid
@@ -103,11 +106,13 @@ def _from_desired(grid: Transcription, search: Search) -> Outcome:
 def _spent(grid: Transcription, budgets: Sequence[Budget], best: Outcome) -> str:
     """Return the sentence on what is spent of each budget."""
     measures = iter(grid.budgets)
-    attitudes = (rows for rows in grid.rows if isinstance(rows, AttitudeRows))
+    bounds = {type(rows): rows for rows in grid.rows}
     shares = []
     for budget in budgets:
         if budget.metric == "attitude_error_max_deg":
-            square = float(np.max(next(attitudes).value(best.x)))
+            square = float(np.max(bounds[AttitudeRows].value(best.x)))
+        elif budget.metric == "seat_angular_acceleration_peak_ratio":
+            square = float(np.max(bounds[SeatAccelerationRows].value(best.x)))
         else:
             square = next(measures).value(best.x)
         shares.append(f"{np.sqrt(square):.2%} of the budget on {METRICS[budget.metric].key}")

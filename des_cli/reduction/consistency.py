@@ -86,6 +86,10 @@ def _of_free_joints(reduction: Reduction) -> Iterator[str]:
             "mean_square_one_minus_p measures factors, which control: free has none of: "
             "add --control per-joint (or scalar)"
         )
+    if _turns_seat(reduction) and any(
+        budget.metric == "attitude_error_max_deg" for budget in reduction.budget
+    ):
+        yield "a budget on the attitude is of a seat that stays: leave seat_yaw and seat_pitch out"
     if reduction.jacobian == "adapted":
         yield "jacobian: adapted turns factors into rates, and control: free has none of them"
 
@@ -96,3 +100,7 @@ def _of_what_is_weighed(reduction: Reduction) -> Iterator[str]:
         yield "hold leaves no joint to change"
     if not np.any(reduction.r1):
         yield "r1 weighs no Coriolis component"
+
+
+def _turns_seat(reduction: Reduction) -> bool:
+    return any(name.startswith("seat_") for name in reduction.optimise)

@@ -20,7 +20,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine
 from des_cli.model.motion import Motion
 from des_cli.reduction.limit_rows import LimitRows
-from des_cli.reduction.limits import find_violations, measure_peaks
+from des_cli.reduction.limits import angle_magnitude, find_violations, measure_peaks
 from des_cli.reduction.reference import sample_motion
 from des_cli.solver.band import SymmetricBand
 from des_cli.solver.quadratic import minimise_quadratic
@@ -52,6 +52,9 @@ CORNER = 0.5
 rates, unless the desired motion asks for more elsewhere. A corner that is rounded at the
 limit itself leaves a scalar factor no room: it would have to stay at one or below, for
 every joint, wherever one joint turns a corner."""
+
+TABLE_ROUNDS = 5
+"""Fits until a table keeps the angle limits."""
 
 STRAIGHT = 1e-4
 """Difference of an angle [rad] from the integral of its rates that is the quadrature's
@@ -131,6 +134,41 @@ def fit_executable(
     return ExecutableSpline(grid, base + outcome.x, trouble)
 
 
+def fit_for_table(
+    grid: SplineGrid, t: Floats, desired: Motion, limits: Sequence[JointLimits], ends: Ends
+) -> tuple[ExecutableSpline, tuple[JointLimits, ...]]:
+    """Return the nearest spline whose table keeps the angle limits too.
+
+    The angles of a table with few rows, the integrals of rates that are linear between
+    them, are not quite the spline's: where they leave a limit it is drawn in.
+
+    Parameters
+    ----------
+    grid, desired, limits, ends
+        As for `fit_executable`.
+    t : (m,) array
+        Times of the table [s].
+
+    Returns
+    -------
+    spline : ExecutableSpline
+    limits : tuple of JointLimits
+        As they were drawn in.
+    """
+    drawn = tuple(limits)
+    for _ in range(TABLE_ROUNDS):
+        found = fit_executable(grid, desired, drawn, ends)
+        reach = np.max(angle_magnitude(sample_spline(found, t)), axis=0)
+        excess = reach - np.array([limit.angle for limit in limits])
+        if found.trouble or np.all(excess <= 0.0):
+            break
+        drawn = tuple(
+            replace(limit, angle=limit.angle - 2.0 * max(float(e), 0.0))
+            for limit, e in zip(drawn, excess, strict=True)
+        )
+    return found, drawn
+
+
 def nearest_executable(machine: Machine, desired: Motion) -> tuple[Motion, str]:
     """Return the nearest motion inside the machine's limits for factors on its rates.
 
@@ -153,7 +191,8 @@ def nearest_executable(machine: Machine, desired: Motion) -> tuple[Motion, str]:
     if near and not broken and not find_violations(machine, straight, "desired"):
         return straight, ""
     ends = start_kept(rates=False)
-    found = fit_executable(knot_grid(desired.t), desired, _eased(machine, desired), ends)
+    grid = knot_grid(desired.t)
+    found, _ = fit_for_table(grid, desired.t, desired, _eased(machine, desired), ends)
     return sample_spline(found, desired.t), found.trouble
 
 
@@ -167,7 +206,8 @@ def sample_spline(spline: ExecutableSpline, t: Floats) -> Motion:
     """Return a spline as a table plays it: rates linear between the samples.
 
     Means of accelerations and jerks never exceed what they are means of, so that the
-    table keeps every limit that the spline keeps.
+    table keeps every limit on these and on the rates that the spline keeps. Its angles
+    are off by a twelfth of the squared step times the change of the acceleration.
     """
     first = spline.grid.values(spline.control, t[:1])[0]
     return integrate_rates(t, first, spline.grid.values(spline.control, t, 1))

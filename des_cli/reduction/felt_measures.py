@@ -12,7 +12,7 @@ import numpy as np
 from des_cli.kinematics.coriolis import coriolis, coriolis_derivatives
 from des_cli.model.arrays import Floats
 from des_cli.reduction.transcription import Transcription
-from des_cli.solver.program import Expansion, Measure
+from des_cli.solver.program import Expansion, Measure, Rows
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
 
@@ -56,7 +56,7 @@ class IntervalDeviation(Measure):
 
     def value(self, x: Floats) -> float:
         """Return the value of an iterate."""
-        return float(self.weight @ np.sum(self._off(x) ** 2, axis=(1, 2)))
+        return float(self.weight @ np.sum(self.off(x) ** 2, axis=(1, 2)))
 
     def _on_sides(self, angle: Floats, start: Floats, end: Floats, acceleration: Floats) -> Floats:
         """Return the vector at start and end of each interval, (n - 1, 2, 3)."""
@@ -68,37 +68,44 @@ class IntervalDeviation(Measure):
             axis=1,
         )
 
-    def _off(self, x: Floats) -> Floats:
+    def off(self, x: Floats) -> Floats:
+        """Return the vector less its target at both ends of each interval, (n - 1, 2, 3)."""
         points = self.grid.points
         rate = self.grid.rates.value(points.gather(x))
         start, end = rate[points.start], rate[points.end]
         acceleration = (end - start) / (2.0 * self.half[:, None])
         return self._on_sides(x[:, :3], start, end, acceleration) - self.target
 
-    def expand(self, x: Floats) -> Expansion:
-        """Expand the value; the Hessian is that of Gauss and Newton."""
-        points, n = self.grid.points, self.grid.n
+    def slopes(self, x: Floats) -> list[list[Floats]]:
+        """Return at start and end of each interval the derivatives in x_k and x_{k+1}."""
+        points = self.grid.points
         rate, slope = self.grid.rates.expand(points.gather(x))
         ends = (rate[points.start], rate[points.end])
         slopes = (slope[points.start], slope[points.end])
         per_step = 1.0 / (2.0 * self.half)
         acceleration = (ends[1] - ends[0]) * per_step[:, None]
-        off = self._off(x)
-        width = x.shape[1]
-        gradient, hessian = np.zeros((n, width)), np.zeros((n, width, width))
-        across = np.zeros((n - 1, width, width))
-        weight = 2.0 * self.weight
+        found = []
         for side, angle in enumerate((x[:-1, :3], x[1:, :3])):
             by_angle, by_rate, by_acceleration = self.derivatives(angle, ends[side], acceleration)
             change = by_acceleration * per_step[:, None, None]
             blocks = [-change @ slopes[0], change @ slopes[1]]
             blocks[side] = blocks[side] + by_rate @ slopes[side]
             blocks[side][:, :, :3] += by_angle
-            left, right = blocks
+            found.append(blocks)
+        return found
+
+    def expand(self, x: Floats) -> Expansion:
+        """Expand the value; the Hessian is that of Gauss and Newton."""
+        n, width = self.grid.n, x.shape[1]
+        off = self.off(x)
+        gradient, hessian = np.zeros((n, width)), np.zeros((n, width, width))
+        across = np.zeros((n - 1, width, width))
+        weight = 2.0 * self.weight
+        for side, (left, right) in enumerate(self.slopes(x)):
             miss = (weight[:, None] * off[:, side])[:, None, :]
             gradient[:-1] += (miss @ left)[:, 0]
             gradient[1:] += (miss @ right)[:, 0]
-            heavy = [np.swapaxes(block * weight[:, None, None], 1, 2) for block in blocks]
+            heavy = [np.swapaxes(b * weight[:, None, None], 1, 2) for b in (left, right)]
             hessian[:-1] += heavy[0] @ left
             hessian[1:] += heavy[1] @ right
             across += heavy[0] @ right
@@ -169,3 +176,42 @@ class SeatAccelerationDeviation(IntervalDeviation):
         _, by_angle, by_rate = coriolis_derivatives(self.grid.problem.chain, angle, rate, "seat")
         turned = (acceleration[:, None, None, :] @ self.turn(angle))[:, :, 0]  # (k, angle, axis)
         return by_angle + np.swapaxes(turned, 1, 2), by_rate, np.swapaxes(self.axes(angle), 1, 2)
+
+
+class SeatAccelerationSize(SeatAccelerationDeviation):
+    """||dW/dt|| over ||(dW/dt)_reference||, squared: how much more the seat is turned at all."""
+
+    def __init__(self, grid: Transcription, budget: float) -> None:
+        super().__init__(grid, budget, relative=True)
+        self.target = np.zeros_like(self.target)
+
+
+class SeatAccelerationRows(Rows):
+    """|dW/dt|^2 at both ends of every interval over the largest of the reference's, squared.
+
+    Parameters
+    ----------
+    grid : Transcription
+    most : float
+        Largest ratio of the peaks.
+    """
+
+    def __init__(self, grid: Transcription, most: float) -> None:
+        super().__init__(np.arange(grid.n - 1))
+        self.vectors = SeatAccelerationSize(grid, 1.0)
+        reference = SeatAccelerationDeviation(grid, 1.0, relative=False).target
+        peak = float(np.max(np.sum(reference**2, axis=2)))
+        self.scale = 1.0 / (most**2 * max(peak, 1e-300))
+
+    def value(self, x: Floats) -> Floats:
+        """Return the squares over their bound, (n - 1, 2)."""
+        return np.asarray(self.scale * np.sum(self.vectors.off(x) ** 2, axis=2))
+
+    def jacobian(self, x: Floats) -> tuple[Floats, ...]:
+        """Return the derivatives in x_k and x_{k+1}."""
+        slopes = self.vectors.slopes(x)
+        along = 2.0 * self.scale * self.vectors.off(x)
+        blocks = [
+            [along[:, side, None, :] @ slopes[side][ahead] for side in (0, 1)] for ahead in (0, 1)
+        ]
+        return tuple(np.concatenate(sides, axis=1) for sides in blocks)

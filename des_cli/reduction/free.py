@@ -19,6 +19,7 @@ import numpy as np
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.coriolis import coriolis
 from des_cli.kinematics.response import respond_on
+from des_cli.kinematics.seat_turn import seat_turns
 from des_cli.kinematics.twist import seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
@@ -28,13 +29,14 @@ from des_cli.model.profile import Axes, Reduction
 from des_cli.model.solution import Iteration, Solution, Status
 from des_cli.reduction.executable import (
     ExecutableSpline,
-    fit_executable,
+    fit_for_table,
     knot_grid,
     sample_spline,
 )
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free_problem import (
     AT_POINTS,
+    SEAT_ANGLES,
     FreeTask,
     cross_coupling,
     in_ground_axes,
@@ -173,6 +175,10 @@ class _Search:
         if not seat_forms(self.task.chain, self.task.machine.gravity).vertical:
             why = "free joints need an arm that turns about the vertical; take --control scalar"
             return self._refused(self.task.reference, why)
+        fixed = {name for name in self.task.reduction.optimise if name in SEAT_ANGLES}
+        if missing := sorted(fixed - set(seat_turns(self.task.machine, self.task.seat))):
+            why = f"the machine has no {' and no '.join(missing)} beyond its cab to be found"
+            return self._refused(self.task.reference, why)
         grids = self._grids()
         fits = [self._fit(grid) for grid in grids]
         finest = fits[-1]
@@ -233,7 +239,9 @@ class _Search:
 
     def _fit(self, grid: SplineGrid) -> ExecutableSpline:
         task = self.task
-        return fit_executable(grid, task.reference, task.limits, task.base_ends)
+        fit, limits = fit_for_table(grid, self.t, task.reference, task.limits, task.base_ends)
+        self.task = replace(task, limits=limits)
+        return fit
 
     def _program(self, fit: ExecutableSpline, budgets: Sequence[Budget]) -> MotionProgram:
         ties: tuple[Tie, ...] = ()
@@ -448,6 +456,11 @@ class _Search:
             for b, value in zip(budgets, values.budgets, strict=True)
             if value >= 1.0
         ]
+        if over and self.task.reduction.limits != "enforce":
+            return (
+                "no smooth motion comes nearer to the steps of what the profile asks for than "
+                f"{', '.join(over)}; smooth it, or allow more"
+            )
         if over:
             return (
                 "keeping the machine's limits alone costs more than the budgets allow: "

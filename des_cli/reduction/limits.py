@@ -51,7 +51,7 @@ class Peaks:
 def measure_peaks(motion: Motion) -> Peaks:
     """Return the largest magnitudes of a motion."""
     return Peaks(
-        angle=np.max(np.abs(motion.angle), axis=0),
+        angle=np.max(angle_magnitude(motion), axis=0),
         rate=np.max(np.abs(motion.rate_sides), axis=(0, 1)),
         acceleration=np.max(acceleration_magnitude(motion), axis=0),
         jerk=np.max(jerk_magnitude(motion), axis=0),
@@ -78,6 +78,20 @@ def acceleration_magnitude(motion: Motion) -> Floats:
         second[np.abs(motion.rate_step) > STEP_TOLERANCE] = 0.0
         second[:, 0] = 0.0  # the arm is commanded by its velocity
         magnitude[1:-1] = np.maximum(magnitude[1:-1], second)
+    return magnitude
+
+
+def angle_magnitude(motion: Motion) -> Floats:
+    """Return the largest angle on the interval from each sample on, (n, 3) [rad].
+
+    Between samples the angle is a parabola, whose vertex may lie beyond both of them.
+    """
+    start, end = motion.rate_start, motion.rate_end
+    turns = start * end < 0.0
+    rise = np.where(turns, 0.5 * start**2 / np.where(turns, start - end, 1.0), 0.0)
+    vertex = motion.angle[:-1] + rise * motion.step[:, None]
+    magnitude = np.abs(motion.angle)
+    magnitude[:-1] = np.maximum(magnitude[:-1], np.abs(vertex))
     return magnitude
 
 
@@ -127,7 +141,7 @@ def find_violations(machine: Machine, motion: Motion, which: Which) -> tuple[Vio
         step[1:-1] = np.abs(motion.rate_step[:, j])
         # No finite acceleration makes a step: any step beyond rounding is named.
         for quantity, values, bound, allowance in (
-            ("angle", np.abs(motion.angle[:, j]), limit.angle, 0.0),
+            ("angle", angle_magnitude(motion)[:, j], limit.angle, 0.0),
             ("rate", rate[:, j], limit.rate, 0.0),
             ("acceleration", acceleration[:, j], limit.acceleration, 0.0),
             ("jerk", jerk[:, j], limit.jerk, rounding[:, j]),

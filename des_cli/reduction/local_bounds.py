@@ -68,8 +68,15 @@ class ComponentBound:
 
     def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers, (36, m)."""
-        push = (self.direction / self.scale[:, None]).T @ multiplier
-        return curvature_of(seat, {"force": push})
+        return curvature_of(seat, {"force": self.push(multiplier)})
+
+    def push(self, multiplier: Floats) -> Floats:
+        """Return the force's multipliers, (3, m), of the rows', (rows, m)."""
+        return np.asarray((self.direction / self.scale[:, None]).T @ multiplier)
+
+    def along(self, change: Floats) -> Floats:
+        """Return what a change of the force, (3, m), changes of the rows, (rows, m)."""
+        return np.asarray((self.direction / self.scale[:, None]) @ change)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,5 +195,14 @@ class OnsetBound:
 
     def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers (rows, count), (36, 2 count)."""
+        return curvature_of(seat, {"force": self.push(multiplier)})
+
+    def push(self, multiplier: Floats) -> Floats:
+        """Return the force's multipliers, (3, 2 count), of the rows', (rows, count)."""
         push = self.direction.T @ multiplier
-        return curvature_of(seat, {"force": np.concatenate([-push, push], axis=1)})
+        return np.concatenate([-push, push], axis=1)
+
+    def along(self, change: Floats) -> Floats:
+        """Return what a change of the force, (3, 2 count), changes of the rows."""
+        first, second = np.split(change, 2, axis=1)
+        return np.asarray(self.direction @ (second - first))

@@ -11,7 +11,11 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.metric import MetricKey
-from des_cli.reduction.felt_measures import SeatAccelerationDeviation, SeatGDeviation
+from des_cli.reduction.felt_measures import (
+    SeatAccelerationDeviation,
+    SeatAccelerationSize,
+    SeatGDeviation,
+)
 from des_cli.reduction.points import Points
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.program import Expansion, Measure
@@ -157,8 +161,8 @@ def mean_at_points(points: Points, half: Floats, sides: Floats) -> tuple[Floats,
 def measure_of(grid: Transcription, metric: MetricKey, budget: float) -> Measure:
     """Return the measure that belongs to a metric of ``fidelity`` and its budget.
 
-    ``attitude_error_max_deg`` is none: it bounds each sample by itself, as
-    ``constraints.AttitudeRows``.
+    ``attitude_error_max_deg`` and ``seat_angular_acceleration_peak_ratio`` are none: they
+    bound each sample by itself, as ``AttitudeRows`` and ``SeatAccelerationRows``.
     """
     match metric:
         case "joint_deviation_relative":
@@ -177,4 +181,6 @@ def measure_of(grid: Transcription, metric: MetricKey, budget: float) -> Measure
             return SeatAccelerationDeviation(grid, budget, relative=True)
         case "seat_angular_acceleration_rms_error_rad_s2":
             return SeatAccelerationDeviation(grid, budget, relative=False)
+        case "seat_angular_acceleration_rms_ratio":
+            return SeatAccelerationSize(grid, budget)
     raise ValueError(f"{metric} is no integral over the motion")

@@ -19,7 +19,13 @@ from des_cli.kinematics.twist import VARIABLES, SeatForms, SeatMotion
 from des_cli.model.arrays import Floats
 from des_cli.reduction.ground_cross import GROUND_VARIABLES, GroundCross, squares_of
 from des_cli.reduction.limit_rows import LimitRows
-from des_cli.reduction.local_bounds import AttitudeBound, LocalBound, OnsetBound
+from des_cli.reduction.local_bounds import (
+    AttitudeBound,
+    ComponentBound,
+    LocalBound,
+    NormBound,
+    OnsetBound,
+)
 from des_cli.reduction.motion_system import MotionExpansion, MotionSystem, factorise
 from des_cli.reduction.terms import Quantity, Term, curvature_of, slope_of, squares, value_of
 from des_cli.reduction.windows import JOINTS, POINTS, Windows
@@ -332,7 +338,8 @@ class _Chunk:
         self.slopes: list[Floats] = []  # by the variables, scaled
         self.turned_slopes: list[Floats] = []  # the same by the seat's angles, (s, 3, m)
         self.multipliers: dict[Quantity, Floats] = {}
-        self.further = np.zeros((VARIABLES * (VARIABLES + 1) // 2, seat.rate.shape[1]))
+        m = seat.rate.shape[1]
+        self.across = np.zeros((len(turns), VARIABLES, m))  # by the seat's angles and these
 
     def take(
         self, term: Term | JointBudget, factor: float, gradient: Floats, control: Floats
@@ -374,7 +381,8 @@ class _Chunk:
         slope = bound.slope(self.seat, angles, self.at)
         multiplier, stiffness = multiplier.reshape(value.shape), stiffness.reshape(value.shape)
         windows = program.angles if isinstance(bound, AttitudeBound) else program.windows
-        total.keep(rows, windows, slope, self.first)
+        by_seat = self._by_seat(bound, value.shape)
+        total.keep(rows, windows, slope, by_seat, self.first)
         if isinstance(bound, AttitudeBound):
             hessian = np.stack(
                 [
@@ -390,24 +398,56 @@ class _Chunk:
         if isinstance(bound, OnsetBound):
             window = program.windows.to_window(slope)
             program.windows.scatter_squares(np.sqrt(stiffness) * window, self.first, total.band)
+            if self.turns:
+                stiff = slope * np.tile(stiffness, (1, POINTS))
+                both = np.tile(by_seat, (1, 1, POINTS))
+                self.across += np.einsum("krm,srm->skm", stiff, both)
+                total.corner += np.einsum("srm,trm,rm->st", by_seat, by_seat, stiffness)
         else:
             self.slopes.append(np.sqrt(stiffness) * slope)
             if self.turns:
-                self.turned_slopes.append(np.zeros((len(self.turns), *value.shape)))
+                self.turned_slopes.append(np.sqrt(stiffness) * by_seat)
         if self.share > 0.0:
-            self.further += self.share * bound.curvature(self.seat, angles, self.at, multiplier)
+            if isinstance(bound, ComponentBound | OnsetBound):
+                self._push("force", self.share * bound.push(multiplier))
+            elif isinstance(bound, NormBound):
+                self._push_length(bound, self.share * multiplier[0])
         return value.reshape(-1)
+
+    def _by_seat(self, bound: LocalBound, shape: tuple[int, ...]) -> Floats:
+        """Return the derivatives of a bound's rows by the seat's angles, (s, r, m)."""
+        by_seat = np.zeros((len(self.turns), *shape))
+        for s, turned in enumerate(self.turned):
+            if isinstance(bound, ComponentBound | OnsetBound):
+                by_seat[s] = bound.along(mixed_force(self.seat, turned))
+            elif isinstance(bound, NormBound):
+                change = _turned_value(self.seat, turned, bound.quantity)
+                along = np.sum(change * value_of(self.seat, bound.quantity), axis=0)
+                by_seat[s] = 2.0 / bound.bound**2 * along
+        return by_seat
+
+    def _push_length(self, bound: NormBound, multiplier: Floats) -> None:
+        """Add the curvature of a bound on a length: a square's, and the quantity's own."""
+        weight = 2.0 * multiplier / bound.bound**2
+        self._push(bound.quantity, weight * value_of(self.seat, bound.quantity))
+        root = np.sqrt(weight)
+        self.slopes.append(root * slope_of(self.seat, bound.quantity))
+        if self.turns:
+            self.turned_slopes.append(
+                root * np.stack([_turned_value(self.seat, t, bound.quantity) for t in self.turned])
+            )
 
     def finish(self) -> None:
         """Bring what was collected to the control points and the seat's angles."""
-        hessian = self.further + (squares(self.slopes) if self.slopes else 0.0)
+        pairs = VARIABLES * (VARIABLES + 1) // 2
+        hessian = squares(self.slopes) if self.slopes else np.zeros((pairs, self.across.shape[2]))
         if self.share > 0.0:
             hessian += curvature_of(self.seat, self.multipliers)
         self.program.windows.scatter_hessian(hessian, self.first, self.total.band)
         if not self.turns:
             return
-        count, m = len(self.turns), self.seat.rate.shape[1]
-        across = np.zeros((count, VARIABLES, m))
+        count = len(self.turns)
+        across = self.across
         for slope, by_seat in zip(self.slopes, self.turned_slopes, strict=True):
             across[:, : len(slope)] += np.einsum("krm,srm->skm", slope, by_seat)
             self.total.corner += np.einsum("srm,trm->st", by_seat, by_seat)

@@ -58,7 +58,9 @@ class MotionExpansion:
         """The budgets' gradients as columns."""
         return self.by_budget.T
 
-    def keep(self, rows: slice, windows: Windows, slope: Floats, first: int) -> None:
+    def keep(
+        self, rows: slice, windows: Windows, slope: Floats, by_seat: Floats, first: int
+    ) -> None:
         """Keep the slopes of a local bound's rows on a span of intervals.
 
         Parameters
@@ -68,10 +70,12 @@ class MotionExpansion:
         windows : Windows
         slope : (v, r, m) array
             By the local variables of the points.
+        by_seat : (s, r, m) array
+            By the seat's free angles.
         first : int
             The span's first interval.
         """
-        self._kept.append(_Rows(rows, windows, slope, first))
+        self._kept.append(_Rows(rows, windows, slope, by_seat, first))
 
     def local_change(self, step: Floats) -> Floats:
         """Return the derivative of the local bounds along a step."""
@@ -80,7 +84,8 @@ class MotionExpansion:
         for kept in self._kept:
             moved = kept.windows.gather(control, kept.first, kept.last)
             by_point = np.einsum("vrm,vm->rm", kept.slope, moved)
-            change[kept.rows] = kept.sum_points(by_point).reshape(-1)
+            turned = np.einsum("srm,s->rm", kept.by_seat, step[self.border.shape[1] :])
+            change[kept.rows] = (kept.sum_points(by_point) + turned).reshape(-1)
         return change
 
     def local_adjoint(self, multiplier: Floats) -> Floats:
@@ -88,7 +93,9 @@ class MotionExpansion:
         adjoint = np.zeros_like(self.gradient)
         control = adjoint[: self.border.shape[1]].reshape(-1, JOINTS)
         for kept in self._kept:
-            push = kept.at_points(multiplier[kept.rows].reshape(kept.slope.shape[1], -1))
+            rows = multiplier[kept.rows].reshape(kept.slope.shape[1], -1)
+            adjoint[self.border.shape[1] :] += np.einsum("srm,rm->s", kept.by_seat, rows)
+            push = kept.at_points(rows)
             kept.windows.scatter(np.einsum("vrm,rm->vm", kept.slope, push), kept.first, control)
         return adjoint
 
@@ -100,6 +107,7 @@ class _Rows:
     rows: slice
     windows: Windows
     slope: Floats
+    by_seat: Floats
     first: int
 
     @property

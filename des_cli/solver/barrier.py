@@ -507,9 +507,8 @@ class _Border:
 
     def correction(self, missed: Floats) -> Floats:
         """Return the shortest move, in the Hessian's norm, that lowers the budgets by so much."""
-        size = np.trace(self._between) + 1e-300
-        shifted = self._between + 1e-12 * size * np.eye(len(missed))
-        return np.asarray(-self._answers @ np.linalg.solve(shifted, missed))
+        inverse = np.linalg.pinv(self._between, rcond=1e-12)  # a gradient may vanish
+        return np.asarray(-self._answers @ (inverse @ missed))
 
 
 def _longest(values: Floats, change: Floats) -> float:

@@ -17,8 +17,9 @@ from des_cli.model.arrays import Floats
 from des_cli.solver.band import BandCholesky, SymmetricBand
 from des_cli.solver.spline import Ends
 
-FEASIBLE = 1e-7
-"""Excess over a limit at the end, relative to the limit: what long angles leave of a jerk."""
+FEASIBLE, ACCEPTED = 1e-9, 1e-7
+"""Excess over a limit that the end aims at, relative to the limit, and that it may have where
+rounding ends the search: long angles leave so much of a jerk."""
 
 OPTIMAL = 1e-6
 """First-order conditions and gap at the end, relative to b and to the cost. The result is a
@@ -26,6 +27,9 @@ start and a replacement for what cannot be executed: more digits mean nothing.""
 
 ROOM = 0.1
 """Share of its limit that a slack starts with at least."""
+
+HOPELESS = 1e12
+"""Gap, relative to the cost, at which multipliers run away because nothing is feasible."""
 
 MAX_ITERATIONS = 80
 
@@ -52,6 +56,10 @@ class Rows(Protocol):
 
     def add_to(self, band: SymmetricBand, stiffness: Floats) -> None:
         """Add ``rows' diag(stiffness) rows`` to a band."""
+
+HOPELESS = 1e60
+"""Relative size of a multiplier, or of the inverse of a slack, beyond which nothing can be
+inside: both would grow until they overflow."""
 
 
 @dataclass(frozen=True)
@@ -103,12 +111,19 @@ class _Search:
             return QuadraticOutcome(self.x, True, 0.0, 0)
         slack = np.maximum(slack, ROOM * bounds)
         dual = 1e-2 * self.size / len(slack) / slack
-        iterations = 0
+        iterations, before = 0, np.inf
         while iterations < MAX_ITERATIONS:
+            if np.min(slack / bounds) * HOPELESS < 1.0 or np.max(dual * bounds) > (
+                HOPELESS * self.size
+            ):
+                break
             local = _Local(self, slack, dual)
             off = float(np.max(np.abs(local.missing) / bounds, initial=0.0))
-            if off < FEASIBLE and local.residual < OPTIMAL and local.gap < OPTIMAL * self.size:
+            optimal = local.residual < OPTIMAL and local.gap < OPTIMAL * self.size
+            ended = off < FEASIBLE or ACCEPTED > off > 0.5 * before
+            if (optimal and ended) or local.gap > HOPELESS * self.size:
                 break
+            before = off
             iterations += 1
             _, change, dual_change = local.step(np.zeros_like(slack))
             ahead = (slack + _longest(slack, change) * change) @ (
@@ -121,7 +136,7 @@ class _Search:
             slack = slack + length * change
             dual = dual + min(1.0, FRACTION * _longest(dual, dual_change)) * dual_change
         worst = float(np.max(-self._slack() / bounds, initial=0.0))
-        return QuadraticOutcome(self.x, worst <= FEASIBLE, worst, iterations)
+        return QuadraticOutcome(self.x, worst <= ACCEPTED, worst, iterations)
 
     def _slack(self) -> Floats:
         value = self.rows.value(self.x)

@@ -81,7 +81,9 @@ def test_the_line_tells_budgets_ends_jerk_and_what_the_occupant_may_get(
     assert (result.exit_code, result.stderr) == (0, "")
     assert result.stdout.strip().endswith(
         "free, seat axes, seat_g_rms_error_g at most 0.05, seat_rate_deviation_relative at most "
-        "0.1, optimise seat_yaw and cab_start, ends match-start, lead_out 2 s, limits warn, "
+        "0.1, seat_angular_acceleration_rms_ratio at most 1.05, "
+        "seat_angular_acceleration_peak_ratio at most 1.1, "
+        "optimise seat_yaw and cab_start, ends match-start, lead_out 2 s, limits warn, "
         "jerk limits unlimited, 5, 10 rad/s^3, gy_g -1 to 1, gz_g at most 9, g_onset_g_s at most 6"
     )
     facts = json.loads(invoke("validate", path.name, "--format", "json").stdout)

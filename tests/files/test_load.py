@@ -94,7 +94,12 @@ reduction: {method: zero, algorithm: report-sweep, control: per-joint, axes: rep
     np.testing.assert_array_equal(found.tracking, [0.5, 0.5, 0.5])
 
 
-FELT = (Budget("seat_g_rms_error_g", 0.05), Budget("seat_rate_deviation_relative", 0.1))
+FELT = (
+    Budget("seat_g_rms_error_g", 0.05),
+    Budget("seat_rate_deviation_relative", 0.1),
+    Budget("seat_angular_acceleration_rms_ratio", 1.05),
+    Budget("seat_angular_acceleration_peak_ratio", 1.1),
+)
 
 
 @pytest.mark.parametrize(

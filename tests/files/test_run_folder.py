@@ -6,6 +6,7 @@ import math
 import os
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -39,13 +40,21 @@ def stored(tmp_path: Path, synthetic_run: MakeRun) -> Path:
     return folder
 
 
-def test_everything_reads_back(tmp_path: Path, synthetic_run: MakeRun) -> None:
-    run = synthetic_run(101, per_joint=True)
+@pytest.mark.parametrize(
+    ("control", "adjoint", "figures"),
+    [("scalar", 3, 8), ("per-joint", 3, 8), ("per-joint", 0, 7), ("free", 0, 6)],
+)
+def test_everything_reads_back(
+    tmp_path: Path, synthetic_run: MakeRun, control: str, adjoint: int, figures: int
+) -> None:
+    run = synthetic_run(101, control=control)
+    solution = replace(run.solution, adjoint=run.solution.adjoint[:, :adjoint])
+    run = replace(run, solution=solution)
     folder = tmp_path / "runs" / "cobra"
     written = write_run(run, folder)
     assert written[-1] == folder / "manifest.json"
     assert sorted(str(path.relative_to(folder)) for path in written) == sorted(tree(folder))
-    assert len(list((folder / "plots").glob("*.png"))) == 8
+    assert len(list((folder / "plots").glob("*.png"))) == figures
     found = read_run(folder)
     assert found.name == "cobra"
     assert found.metrics == run.metrics

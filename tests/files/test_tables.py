@@ -7,7 +7,6 @@ import math
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -158,7 +157,7 @@ def test_columns_are_vectors_of_one_length(columns: dict[str, Floats]) -> None:
 
 
 def test_commands_give_the_modified_motion_in_their_units(synthetic_run: MakeRun) -> None:
-    run = synthetic_run(101, per_joint=True)
+    run = synthetic_run(101, control="per-joint")
     motion = run.solution.modified
     found = read_back(encode_table(command_columns(run), "csv"), "csv")
     expected = {
@@ -177,14 +176,14 @@ def test_trajectory_has_the_columns_of_the_contract(synthetic_run: MakeRun) -> N
     asked = [f"asked_{name}" for name in JOINT_COLUMNS]
     rest = [*adjoint, *VECTOR_COLUMNS, *SPLIT_COLUMNS, *asked]
     scalar = trajectory_columns(synthetic_run(11))
-    joints = trajectory_columns(synthetic_run(11, per_joint=True))
+    joints = trajectory_columns(synthetic_run(11, control="per-joint"))
     assert list(scalar) == ["t_s", *motions, "p", *rest] == list(trajectory_names(1))
     assert list(joints) == ["t_s", *motions, "p_arm", "p_fork", "p_cab", *rest]
     assert {values.shape for values in joints.values()} == {(11,)}
 
 
 def test_trajectory_columns_hold_what_their_names_say(synthetic_run: MakeRun) -> None:
-    run = synthetic_run(101, per_joint=True)
+    run = synthetic_run(101, control="per-joint")
     columns = trajectory_columns(run)
     modified = run.solution.modified
     for i, joint in enumerate(("arm", "fork", "cab")):
@@ -223,10 +222,22 @@ def test_trajectory_columns_hold_what_their_names_say(synthetic_run: MakeRun) ->
                 np.testing.assert_array_equal(columns[f"seat_{part}_{axis}_{when}_g"], share)
 
 
-def test_a_motion_without_factors_has_no_columns_for_them(synthetic_run: MakeRun) -> None:
-    run = synthetic_run(11)
-    free = replace(run, solution=replace(run.solution, control=np.empty((11, 0))))
-    assert set(trajectory_columns(run)) - set(trajectory_columns(free)) == {"p"}
+def test_a_free_motion_has_no_columns_for_factors_and_adjoint(synthetic_run: MakeRun) -> None:
+    scalar, free = (trajectory_columns(synthetic_run(11, control=c)) for c in ("scalar", "free"))
+    assert set(scalar) - set(free) == {"p", "adjoint_arm", "adjoint_fork", "adjoint_cab"}
+    assert list(free) == list(trajectory_names(0, adjoint=False))
+
+
+def test_the_commands_have_the_leads_and_the_trajectory_has_the_maneuver(
+    synthetic_run: MakeRun,
+) -> None:
+    run = synthetic_run(101, leads=2.0)
+    commands = command_columns(run)
+    assert (commands["t_s"][0], commands["t_s"][-1], len(commands["t_s"])) == (-2.0, 12.0, 103)
+    # at the step from rest a velocity command is the mean of both sides
+    rpm = run.solution.modified.rate_start[0, 0] * (30 / math.pi)
+    np.testing.assert_allclose(commands["arm_rpm"][:2], [0.0, rpm / 2], rtol=1e-12)
+    np.testing.assert_array_equal(trajectory_columns(run)["t_s"], run.solution.modified.t)
 
 
 def test_a_motion_of_one_interval_has_a_trajectory(synthetic_run: MakeRun) -> None:

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any, get_args
+from dataclasses import replace
+from typing import get_args
 
 import pytest
 
 from des_cli.errors import NotReleasedError
+from des_cli.model.profile import LimitsPolicy
 from des_cli.model.run import JointQuantity, Run, SeatQuantity, Violation
+from tests.support.runs import make_run
 
 FELT = Violation("modified", "seat", "Gy", 2.1, 1.0, 3.0, 4.5)
 JERK = Violation("modified", "cab", "jerk", 12.0, 10.0, 5.0, 5.0)
 
 
-def run_with(limits: str, *violations: Violation) -> Run:
-    nothing: Any = None
-    profile: Any = SimpleNamespace(name="loop", reduction=SimpleNamespace(limits=limits))
-    solution: Any = SimpleNamespace(usable=True)
-    return Run(profile, nothing, nothing, solution, nothing, nothing, (), violations, metrics={})
+def run_with(limits: LimitsPolicy, *violations: Violation) -> Run:
+    run = make_run(3)
+    reduction = replace(run.profile.reduction, limits=limits)
+    return replace(run, profile=replace(run.profile, reduction=reduction), violations=violations)
 
 
 def test_a_sentence_names_value_bound_and_time() -> None:
@@ -34,7 +35,7 @@ def test_every_quantity_has_a_unit() -> None:
 
 
 @pytest.mark.parametrize("limits", ["check", "enforce"])
-def test_bounds_for_the_occupant_and_jerk_refuse_like_any_limit(limits: str) -> None:
+def test_bounds_for_the_occupant_and_jerk_refuse_like_any_limit(limits: LimitsPolicy) -> None:
     with pytest.raises(NotReleasedError) as caught:
         run_with(limits, FELT, JERK).require_release()
     assert [problem.what for problem in caught.value.problems] == [str(FELT), str(JERK)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.arrays import Floats
-from des_cli.model.machine import Seat
+from des_cli.model.machine import Machine, Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
 from des_cli.model.solution import Solution
@@ -152,6 +153,12 @@ def study_motion(problem: Problem, control: Floats) -> Floats:
     start = np.zeros((*control.shape[:-2], 1, 3))
     angle = desired.angle[0] + np.concatenate([start, np.cumsum(moved, axis=-2)], axis=-2)
     return np.concatenate([angle, control], axis=-1)
+
+
+@pytest.fixture(scope="session")
+def table_1() -> Machine:
+    """The DES with the limits of Table 1 alone, which has none on the jerk."""
+    return replace(DES, limits=tuple(replace(limit, jerk=np.inf) for limit in DES.limits))
 
 
 @pytest.fixture(scope="session")

@@ -131,9 +131,9 @@ def ipopt(closed_coriolis):
 def executable(cobra):
     """The Cobra with its corner rounded, so that the machine can do it."""
 
-    def make(intervals, **options):
-        motion, outcome = nearest_executable(DES, cobra(intervals, **options))
-        assert outcome.status == "converged"
+    def make(intervals, machine=DES):
+        motion, trouble = nearest_executable(machine, cobra(intervals))
+        assert trouble == ""
         return motion
 
     return make

@@ -266,7 +266,7 @@ def test_a_table_of_few_digits_does_command_the_jerk_of_its_stairs():
 def response_of(seat_g):
     """A response that has a G-vector and nothing else."""
     nothing = np.zeros_like(seat_g)
-    return Response(nothing, nothing, nothing, nothing[..., None] * np.zeros(3), seat_g)
+    return Response(nothing, nothing, nothing, nothing, nothing[..., None] * np.zeros(3), seat_g)
 
 
 def still(t=T):
@@ -313,19 +313,33 @@ def test_an_open_end_bounds_nothing_and_a_bound_itself_is_allowed():
         assert find_occupant_violations(machine, Seat(), response, still(), "desired") == ()
 
 
-def test_onset_is_the_change_from_sample_to_sample_jumps_included():
-    sides = np.zeros((40, 2, 3))
-    sides[20:, :, 1] = 0.3  # a jump at 2 s, over a step of 0.1 s
-    found = find_occupant_violations(
-        occupant(g_onset=2.0), Seat(), response_of(sides), still(), "modified"
+@pytest.mark.parametrize("intervals", [40, 400])
+def test_onset_is_the_change_over_a_tenth_of_a_second_jumps_included(intervals):
+    t = np.linspace(0.0, 4.0, intervals + 1)
+    sides = np.zeros((intervals, 2, 3))
+    sides[t[:-1] > 2.0 - 1e-9, :, 1] = 0.3  # a jump at 2 s
+    (onset,) = find_occupant_violations(
+        occupant(g_onset=2.0), Seat(), response_of(sides), still(t), "modified"
     )
-    (onset,) = found
     assert (onset.quantity, onset.peak) == ("Gy onset", pytest.approx(3.0))
-    assert (onset.from_s, onset.to_s) == (T[19], T[20])
+    # named by the first times of the windows that see it
+    assert (onset.from_s, onset.to_s) == pytest.approx((1.9, 2.0), abs=1e-6)
     assert "seat Gy onset 3 g/s exceeds the bound 2 g/s" in str(onset)
     assert not find_occupant_violations(
-        occupant(g_onset=3.1), Seat(), response_of(sides), still(), "modified"
+        occupant(g_onset=3.1), Seat(), response_of(sides), still(t), "modified"
     )
+
+
+def test_a_spike_shorter_than_the_window_has_the_onset_of_its_height():
+    # From sample to sample it rises by 10 g/s; over a tenth of a second by 2 g/s.
+    t = np.linspace(0.0, 4.0, 401)
+    values = np.where(np.abs(t - 2.0) < 0.011, 0.2 - 10.0 * np.abs(t - 2.0), 0.0)
+    sides = np.zeros((400, 2, 3))
+    sides[..., 0] = np.stack([values[:-1], values[1:]], axis=1)
+    found = find_occupant_violations(
+        occupant(g_onset=1.5), Seat(), response_of(sides), still(t), "desired"
+    )
+    assert [(v.quantity, v.peak) for v in found] == [("Gx onset", pytest.approx(2.0))]
 
 
 def test_angular_acceleration_is_that_of_the_turning_seat():

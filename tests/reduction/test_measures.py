@@ -13,6 +13,7 @@ from des_cli.kinematics.response import respond
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
+from des_cli.reduction.felt_measures import SeatAccelerationRows
 from des_cli.reduction.measures import measure_of
 from des_cli.reduction.transcription import Transcription
 
@@ -145,3 +146,33 @@ def test_a_reference_of_its_own_whose_rates_step(name, grid, x, pose, wave):
     assert measure.value(x) == pytest.approx(1.0, rel=1e-8)
     assert measure.expand(x).cost == pytest.approx(1.0, rel=1e-8)
     assert measure.value(grid.desired) > 1e-4
+
+
+def sizes(grid, x):
+    """|dW/dt| on sides, of the reference and of an iterate."""
+    motions = (grid.problem.reference, grid.motion(x))
+    return [np.linalg.norm(angular_acceleration(motion), axis=-1) for motion in motions]
+
+
+def test_the_ratio_of_the_root_mean_squares(grid, x):
+    step = grid.problem.reference.step
+    before, after = (trapezoids(step, size**2) for size in sizes(grid, x))
+    name = "seat_angular_acceleration_rms_ratio"
+    measure = measure_of(grid, name, np.sqrt(after / before))
+    assert measure.value(x) == pytest.approx(1.0, rel=1e-8)
+    assert measure.value(grid.desired) == pytest.approx(before / after, rel=1e-8)
+    move, h = np.random.default_rng(6).normal(size=x.shape), 1e-5
+    slope = (measure.value(x + h * move) - measure.value(x - h * move)) / (2.0 * h)
+    assert np.sum(measure.expand(x).gradient * move) == pytest.approx(slope, rel=1e-6)
+
+
+def test_the_ratio_of_the_peaks_bounds_both_ends_of_every_interval(grid, x):
+    before, after = sizes(grid, x)
+    rows = SeatAccelerationRows(grid, 1.1)
+    expected = (after / (1.1 * before.max())) ** 2
+    np.testing.assert_allclose(rows.value(x), expected, rtol=1e-8)
+    move, h = np.random.default_rng(6).normal(size=x.shape), 1e-5
+    slope = (rows.value(x + h * move) - rows.value(x - h * move)) / (2.0 * h)
+    left, right = rows.jacobian(x)
+    found = left @ move[:-1, :, None] + right @ move[1:, :, None]
+    np.testing.assert_allclose(found[..., 0], slope, rtol=1e-6, atol=1e-7)

@@ -93,7 +93,7 @@ def set_at(metrics: dict[str, Any], path: str, value: object) -> None:
 def test_the_page_has_every_run_figure_and_word_of_the_contract(
     stored: Callable[..., StoredRun],
 ) -> None:
-    page = Page(render_report([stored(), stored("per joint", per_joint=True)]))
+    page = Page(render_report([stored(), stored("per joint", control="per-joint")]))
     images = page.all("img")
     assert len(images) == 2 * len(CAPTIONS)
     assert all((image["src"] or "").startswith("data:image/png;base64,iVBOR") for image in images)

@@ -1,0 +1,162 @@
+"""Fidelity metrics and budgets on them, measured from the motions alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from des_cli.model.arrays import Floats
+from des_cli.model.metric import Budget
+from des_cli.model.motion import Motion
+from des_cli.model.run import Check
+from des_cli.verify.claim import Claim
+from des_cli.verify.felt import Felt
+
+BUDGET_TOLERANCE = 1e-9
+"""Relative excess over a budget that rounding alone may make."""
+
+SPENT, SPENT_OF_TORN = 0.95, 0.6
+"""Share of a budget from which on it may hold a motion. A method keeps a little clear of
+its budgets, and more where a table of few rows is not quite its motion. Where the table
+asked for is torn, its positions jump by what no rate tells and a method that looks between
+the samples sees more than the samples have: more of a budget may seem to be left."""
+
+TORN = 0.05
+"""Largest difference of a mean rate by positions from that by rates, over the joint's
+largest rate, that a quadrature makes; more is a jump."""
+
+NOTHING = 1e-300
+"""Least square of a norm to divide by."""
+
+
+@dataclass(frozen=True, slots=True)
+class Integral:
+    """A metric whose square is an integral over the motion.
+
+    Parameters
+    ----------
+    field : str
+        Of `Felt`.
+    relative : bool
+        Whether it is over the same integral of the motion asked for; else over time.
+    deviation : bool
+        Whether it is of the deviation from the motion asked for; else of the motion itself.
+    squared : bool
+        Whether the metric is the integral and not its root.
+    """
+
+    field: str
+    relative: bool
+    deviation: bool = True
+    squared: bool = False
+
+
+INTEGRALS: Mapping[str, Integral] = MappingProxyType(
+    {
+        "joint_deviation_relative": Integral("angle", relative=True),
+        "joint_deviation_relative_squared": Integral("angle", relative=True, squared=True),
+        "seat_rate_deviation_relative": Integral("rate", relative=True),
+        "seat_g_deviation_relative": Integral("g", relative=True),
+        "seat_g_rms_error_g": Integral("g", relative=False),
+        "seat_angular_acceleration_deviation_relative": Integral("turning", relative=True),
+        "seat_angular_acceleration_rms_error_rad_s2": Integral("turning", relative=False),
+        "seat_angular_acceleration_rms_ratio": Integral("turning", relative=True, deviation=False),
+    }
+)
+
+AT_SAMPLES = frozenset({"attitude_error_max_deg", "seat_angular_acceleration_peak_ratio"})
+"""Metrics that are a largest value over time."""
+
+
+def check_budgets(claim: Claim) -> list[Check]:
+    """Measure what the modified motion spends of every budget."""
+    return [
+        Check(
+            f"budget.{budget.metric}",
+            f"excess over the budget on {budget.metric}",
+            measure(claim, budget.metric, claim.after) / budget.most - 1.0,
+            BUDGET_TOLERANCE,
+        )
+        for budget in claim.reduction.budget
+    ]
+
+
+def keeps_budgets(claim: Claim, felt: Felt) -> bool:
+    """Return whether a motion keeps every budget."""
+    return all(
+        measure(claim, budget.metric, felt) <= budget.most * (1.0 + BUDGET_TOLERANCE)
+        for budget in claim.reduction.budget
+    )
+
+
+def spent_budgets(claim: Claim) -> list[Budget]:
+    """Return the budgets on integrals that may hold the motion: those that are spent."""
+    share = SPENT_OF_TORN if _torn(claim.asked) else SPENT
+    return [
+        budget
+        for budget in claim.reduction.budget
+        if budget.metric not in AT_SAMPLES
+        and measure(claim, budget.metric, claim.after) > share * budget.most
+    ]
+
+
+def measure(claim: Claim, metric: str, felt: Felt) -> float:
+    """Return a fidelity metric of a motion against the one asked for, in its unit.
+
+    Parameters
+    ----------
+    claim : Claim
+    metric : str
+    felt : Felt
+        At the states of the motion.
+    """
+    if metric in AT_SAMPLES:
+        return float(np.max(at_states(claim, metric, felt)))
+    if metric == "mean_square_one_minus_p":
+        return mean_square_one_minus_p(claim, claim.solution.control)
+    square = float(claim.weight @ integrand(metric, felt, claim.before)) / size(claim, metric)
+    return square if INTEGRALS[metric].squared else float(np.sqrt(square))
+
+
+def integrand(metric: str, felt: Felt, before: Felt) -> Floats:
+    """Return what the square of a metric is the integral of, at m states, (m,)."""
+    integral = INTEGRALS[metric]
+    values = getattr(felt, integral.field)
+    if integral.deviation:
+        values = values - getattr(before, integral.field)
+    return np.asarray(np.sum(values**2, axis=0))
+
+
+def size(claim: Claim, metric: str) -> float:
+    """Return what that integral is divided by."""
+    integral = INTEGRALS[metric]
+    if not integral.relative:
+        return claim.duration
+    values = getattr(claim.before, integral.field)
+    return max(float(claim.weight @ np.sum(values**2, axis=0)), NOTHING)
+
+
+def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
+    """Return the values that a metric is the largest of, (m,)."""
+    if metric == "attitude_error_max_deg":
+        chord = np.sqrt(np.sum((felt.rotation - claim.before.rotation) ** 2, axis=(0, 1)) / 8.0)
+        return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(chord, 1.0))))
+    before, after = (np.sqrt(np.sum(each.turning**2, axis=0)) for each in (claim.before, felt))
+    return np.asarray(after / max(float(np.max(before)), NOTHING))
+
+
+def mean_square_one_minus_p(claim: Claim, control: Floats) -> float:
+    """Return the mean of (1 - u)^2 over time and factors (n, m)."""
+    idle = np.mean((1.0 - control) ** 2, axis=1)
+    return float(claim.weight @ np.concatenate([idle[:-1], idle[1:]]) / claim.duration)
+
+
+def _torn(motion: Motion) -> bool:
+    """Return whether positions jump between samples by what no rate tells."""
+    by_position = np.diff(motion.angle, axis=0) / motion.step[:, None]
+    off = np.abs(by_position - 0.5 * (motion.rate_start + motion.rate_end))
+    fastest = np.max(np.abs(motion.rate_sides), axis=(0, 1))
+    return bool(np.any(off > TORN * fastest))

@@ -1,0 +1,103 @@
+"""What is claimed of a solution, and the motions as they are felt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import Seat
+from des_cli.model.motion import Motion
+from des_cli.model.profile import Profile, Reduction
+from des_cli.model.solution import Solution
+from des_cli.reduction.problem import Problem
+from des_cli.verify.felt import Felt, SeatChain
+
+
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """A solution with what it is a solution of.
+
+    Parameters
+    ----------
+    profile : Profile
+    asked : Motion
+        What the profile asks for.
+    desired : Motion
+        The same, or the nearest motion inside the limits.
+    seat : Seat
+        As it is fixed in the modified motion.
+    solution : Solution
+    posed : Problem, optional
+        The problem of factors on the desired rates, as it was solved, along ``desired``;
+        None of a free motion.
+    commands : Motion, optional
+        The motion of the command table, where it has leads before and after.
+    """
+
+    profile: Profile
+    asked: Motion
+    desired: Motion
+    seat: Seat
+    solution: Solution
+    posed: Problem | None = None
+    commands: Motion | None = None
+
+    @property
+    def reduction(self) -> Reduction:
+        """What the profile asks for."""
+        return self.profile.reduction
+
+    @property
+    def modified(self) -> Motion:
+        """The motion that is checked."""
+        return self.solution.modified
+
+    @property
+    def table(self) -> Motion:
+        """What the machine is to play: the modified motion with its leads."""
+        return self.modified if self.commands is None else self.commands
+
+    @property
+    def enforced(self) -> bool:
+        """Whether the motion is to be inside the machine's limits."""
+        return self.reduction.limits == "enforce"
+
+    @cached_property
+    def weight(self) -> Floats:
+        """Weights of the trapezoidal rule on the states of a motion, (2 (n - 1),) [s]."""
+        return np.tile(0.5 * self.asked.step, 2)
+
+    @cached_property
+    def duration(self) -> float:
+        """Length of the motion [s]."""
+        return float(self.asked.t[-1] - self.asked.t[0])
+
+    @cached_property
+    def chain(self) -> SeatChain:
+        """The seat in the modified motion."""
+        return SeatChain(self.profile.machine, self.seat)
+
+    @cached_property
+    def chain_before(self) -> SeatChain:
+        """The seat as the profile fixes it."""
+        return SeatChain(self.profile.machine, self.profile.seat)
+
+    @cached_property
+    def before(self) -> Felt:
+        """The motion asked for at all states."""
+        return self.chain_before.along(self.asked)
+
+    @cached_property
+    def executable(self) -> Felt:
+        """The desired motion at all states."""
+        if self.desired is self.asked:
+            return self.before
+        return self.chain_before.along(self.desired)
+
+    @cached_property
+    def after(self) -> Felt:
+        """The modified motion at all states."""
+        return self.chain.along(self.modified)

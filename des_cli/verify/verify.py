@@ -1,0 +1,130 @@
+"""Whether a solution is what it claims to be, from the motion alone.
+
+Nothing is shared with the methods that find one: what the seat does is evaluated anew by
+``felt``, limits, ends and budgets are measured on the motion as its tables play it, costs
+are summed anew, and first-order conditions are tested by finite differences along
+directions that no method saw.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from des_cli.model.machine import Seat
+from des_cli.model.motion import Motion
+from des_cli.model.profile import Profile
+from des_cli.model.run import Check
+from des_cli.model.solution import Solution
+from des_cli.reduction.problem import Problem
+from des_cli.verify import free, study
+from des_cli.verify.budgets import check_budgets
+from des_cli.verify.claim import Claim
+from des_cli.verify.ends import (
+    check_ends,
+    check_factors,
+    check_hold,
+    check_integral,
+    check_times,
+)
+from des_cli.verify.leads import check_leads
+from des_cli.verify.limits import check_limits
+from des_cli.verify.occupant import check_occupant
+from des_cli.verify.study_optimality import check_optimality
+
+
+def verify(
+    profile: Profile,
+    asked: Motion,
+    desired: Motion,
+    seat: Seat,
+    solution: Solution,
+    posed: Problem | None = None,
+    commands: Motion | None = None,
+) -> tuple[Check, ...]:
+    """Check a solution.
+
+    Parameters
+    ----------
+    profile : Profile
+        Its reduction says which checks apply.
+    asked : Motion
+        What the profile asks for.
+    desired : Motion
+        The same, or the nearest motion inside the limits.
+    seat : Seat
+        As it is fixed in the modified motion.
+    solution : Solution
+    posed : Problem, optional
+        The problem of factors on the desired rates, as it was solved; None of a free
+        motion, and of one per joint with budgets, which is found as a free one.
+    commands : Motion, optional
+        What the command table plays, where that is the modified motion with leads.
+
+    Returns
+    -------
+    tuple of Check
+        Each with a key of its own. Values that are not finite, or other sample times,
+        end the checks.
+    """
+    if posed is not None:
+        desired = posed.desired
+    claim = Claim(profile, asked, desired, seat, solution, posed, commands)
+    first = [_finite(solution, claim.table)]
+    if first[0].ok:
+        first.append(check_times(claim))
+    if not all(check.ok for check in first):
+        return tuple(first)
+    own = _of_free(claim) if posed is None else _of_factors(claim, posed)
+    return (
+        *first,
+        *check_limits(claim),
+        *check_leads(claim),
+        *check_ends(claim),
+        *check_hold(claim),
+        *own,
+    )
+
+
+def _finite(solution: Solution, table: Motion) -> Check:
+    """Count the values that are not finite."""
+    motions = (solution.modified, table)
+    numbers = (
+        *(v for m in motions for v in (m.t, m.angle, m.rate_start, m.rate_end)),
+        solution.control,
+        solution.adjoint,
+        np.array([solution.cost, solution.cost_unreduced]),
+    )
+    bad = sum(int(np.sum(~np.isfinite(values))) for values in numbers)
+    return Check("finite", "count of values that are not finite", float(bad), 0.0)
+
+
+def _of_free(claim: Claim) -> list[Check]:
+    return [
+        check_integral(claim),
+        *check_factors(claim),
+        *_occupant(claim),
+        *check_budgets(claim),
+        *free.check_cost(claim),
+        *free.check_optimality(claim),
+    ]
+
+
+def _of_factors(claim: Claim, problem: Problem) -> list[Check]:
+    wanted = claim.reduction
+    checks = [
+        *study.check_dynamics(claim, problem),
+        *study.check_cost(claim, problem),
+    ]
+    if wanted.method == "zero":
+        checks.append(study.check_zero(claim, problem))
+    elif wanted.algorithm == "optimum":
+        checks += check_budgets(claim)
+        if problem.jacobian == "desired":
+            checks.append(check_optimality(claim, problem))
+    return checks
+
+
+def _occupant(claim: Claim) -> list[Check]:
+    if not claim.enforced:
+        return []
+    return check_occupant(claim.profile.machine.occupant, claim.modified, claim.after)

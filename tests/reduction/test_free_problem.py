@@ -1,0 +1,178 @@
+"""From what a profile asks for to the program: every budget is its metric, squared."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.response import respond_on
+from des_cli.model.machine import OccupantBounds, Seat
+from des_cli.model.machines import DES
+from des_cli.model.profile import Reduction
+from des_cli.reduction.executable import ExecutableSpline, sample_spline
+from des_cli.reduction.fidelity import Deviation
+from des_cli.reduction.free_problem import AT_POINTS, cross_coupling, in_ground_axes, turned_seat
+from tests.support.free_motions import fit, program_of, smooth, sway, task_of
+
+INTERVALS = 40
+MOST = {
+    "joint_deviation_relative": 0.3,
+    "joint_deviation_relative_squared": 0.02,
+    "seat_rate_deviation_relative": 0.7,
+    "seat_g_deviation_relative": 0.4,
+    "seat_g_rms_error_g": 0.2,
+    "seat_angular_acceleration_deviation_relative": 0.8,
+    "seat_angular_acceleration_rms_error_rad_s2": 0.3,
+    "seat_angular_acceleration_rms_ratio": 1.3,
+    "seat_angular_acceleration_peak_ratio": 3.0,
+    "attitude_error_max_deg": 20.0,
+}
+DESIRED = smooth(4000)
+
+
+def moved(task, program, x):
+    """The table that a vector is."""
+    spline = fit(task, INTERVALS)
+    control = spline.control + program.control(x)
+    return sample_spline(ExecutableSpline(spline.grid, control), DESIRED.t)
+
+
+@pytest.mark.parametrize("metric", MOST)
+def test_budgets_are_their_metrics_on_the_table(metric):
+    task = task_of(DESIRED, {metric: MOST[metric]})
+    program = program_of(task, INTERVALS)
+    x = sway(program)
+    modified = moved(task, program, x)
+    deviation = Deviation.between(DESIRED, modified, (task.chain, task.chain), DES.gravity)
+    values = program.values(x)
+    share = deviation.value(metric) / MOST[metric]
+    if metric == "joint_deviation_relative_squared":
+        assert values.budgets[0] == pytest.approx(share, rel=5e-3)
+    elif metric in AT_POINTS:
+        assert values.budgets.size == 0
+        # the points lie between the samples: a peak is a little higher
+        assert np.sqrt(values.local.max()) == pytest.approx(share, rel=3e-2)
+        assert np.sqrt(values.local.max()) <= share * (1.0 + 1e-3)
+    else:
+        assert np.sqrt(values.budgets[0]) == pytest.approx(share, rel=5e-3)
+
+
+@pytest.mark.parametrize("axes", ["seat", "report"])
+@pytest.mark.parametrize("r1", [2.0 * np.eye(3), np.diag([0.0, 2.0, 0.5])], ids=["all", "some"])
+def test_the_cost_is_what_is_left_of_the_cross_coupling(axes, r1):
+    task = task_of(DESIRED, {}, axes=axes, r1=r1)
+    program = program_of(task, INTERVALS, smoothing=np.zeros(3))
+    assert (program.problem.ground is not None) == (axes == "report" and r1[0, 0] == 0.0)
+    assert in_ground_axes(task.reduction) == (program.problem.ground is not None)
+    x = sway(program)
+    energies = []
+    for motion in (DESIRED, moved(task, program, x)):
+        felt = respond_on(task.chain, DES.gravity, motion)
+        c = felt.coriolis_report if axes == "report" else felt.coriolis_seat
+        running = np.einsum("kxi,ij,kxj->kx", c, r1, c)
+        energies.append(np.sum(0.5 * motion.step[:, None] * running))
+    assert cross_coupling(task, program.problem.grid) == pytest.approx(energies[0], rel=1e-4)
+    assert program.values(x).cost == pytest.approx(energies[1] / energies[0], rel=2e-3)
+
+
+@pytest.mark.parametrize("objective", ["felt", "blend"])
+def test_the_felt_error_is_from_the_desired_motion_without_its_cross_coupling(objective):
+    task = task_of(DESIRED, {}, objective=objective)
+    program = program_of(task, INTERVALS, smoothing=np.zeros(3))
+    x = sway(program)
+    before, after = (
+        respond_on(task.chain, DES.gravity, motion) for motion in (DESIRED, moved(task, program, x))
+    )
+    off = after.seat_angular_acceleration - (
+        before.seat_angular_acceleration - before.coriolis_seat
+    )
+    felt, left, size = (
+        np.sum(0.5 * DESIRED.step[:, None] * np.sum(v**2, axis=-1))
+        for v in (off, after.coriolis_seat, before.coriolis_seat)
+    )
+    expected = felt / size if objective == "felt" else (left + 0.1 * felt) / size
+    assert program.values(x).cost == pytest.approx(expected, rel=3e-3)
+
+
+def test_occupant_bounds_are_at_one_where_the_felt_is_at_its_bound():
+    occupant = OccupantBounds(
+        gx=(-1.5, 2.0), gy=(-3.0, 0.7), gz=(0.2, 1.4), g_onset=0.6, angular_acceleration=0.9
+    )
+    task = task_of(DESIRED, {}, replace(DES, occupant=occupant))
+    program = program_of(task, INTERVALS)
+    local = program.values(np.zeros(program.size)).local
+    felt = respond_on(task.chain, DES.gravity, DESIRED)
+    components, norm, onset = np.split(local, [6 * 2 * INTERVALS, 7 * 2 * INTERVALS])
+    g = felt.seat_g.reshape(-1, 3)
+    # rows in the order gx most, gx least, gy most, ...
+    for row, (axis, bound, sign) in enumerate(
+        [(0, 2.0, 1), (0, -1.5, -1), (1, 0.7, 1), (1, -3.0, -1), (2, 1.4, 1), (2, 0.2, -1)]
+    ):
+        expected = 1.0 + np.max(sign * (g[:, axis] - bound)) / max(abs(bound), 1.0)
+        found = np.max(components.reshape(6, -1)[row])
+        assert found == pytest.approx(expected, abs=0.02)
+    length = np.linalg.norm(felt.seat_angular_acceleration, axis=-1).max()
+    assert np.sqrt(norm.max()) == pytest.approx(length / 0.9, rel=0.02)
+    rise = np.diff(felt.seat_g.mean(axis=1), axis=0) / DESIRED.step[1:, None]
+    assert onset.max() == pytest.approx(np.abs(rise).max() / 0.6, rel=0.03)
+    assert len(onset) == 6 * INTERVALS
+
+
+def test_what_is_not_enforced_is_not_bounded():
+    occupant = OccupantBounds(gx=(-1.0, 1.0))
+    task = task_of(DESIRED, {}, replace(DES, occupant=occupant), limits="warn")
+    program = program_of(task, INTERVALS)
+    assert program.bounds.size == 0
+    assert program.values(np.zeros(program.size)).local.size == 0
+
+
+ENDS = {
+    "free": (0, 0, 0),
+    "match-start": (1, 0, 0),
+    "match-rates": (1, 0, 1),
+    "match-both": (1, 1, 1),
+}
+
+
+@pytest.mark.parametrize(("name", "kept"), ENDS.items(), ids=list(ENDS))
+def test_ends(name, kept):
+    task = task_of(DESIRED, {}, ends=name, optimise=("cab_start",), hold=frozenset({"fork"}))
+    ends, base = task.ends, task.base_ends
+    np.testing.assert_array_equal(ends.start_value, [True, True, False])
+    np.testing.assert_array_equal(ends.held, [False, True, False])
+    for flags, expected in zip((ends.start_rate, ends.end_value, ends.end_rate), kept, strict=True):
+        np.testing.assert_array_equal(flags, bool(expected))
+    assert np.all(base.start_value)  # the executable motion starts where it is asked to
+    assert not np.any(base.held)
+    np.testing.assert_array_equal(base.end_rate, ends.end_rate)
+
+
+def test_seats_turn_in_the_chains_order():
+    task = task_of(DESIRED, {}, optimise=("seat_pitch", "seat_yaw"))
+    turned = turned_seat(task, np.array([0.1, -0.2]))
+    assert (turned.yaw, turned.pitch) == pytest.approx((np.pi / 2 + 0.1, -0.2))
+    alone = task_of(DESIRED, {}, seat=Seat(0.3, 0.4), optimise=("seat_pitch",))
+    turned = turned_seat(alone, np.array([0.5]))
+    assert (turned.yaw, turned.pitch) == pytest.approx((0.3, 0.9))
+
+
+def test_the_seats_budgets_are_those_of_the_turned_seat():
+    change = np.array([0.05, -0.03])
+    metric = {"seat_g_rms_error_g": 0.2, "seat_rate_deviation_relative": 0.7}
+    task = task_of(DESIRED, metric, optimise=("seat_yaw", "seat_pitch"))
+    program = program_of(task, INTERVALS)
+    x = sway(program)
+    x[-2:] = change
+    chains = task.chain, chain_of(DES, turned_seat(task, change))
+    deviation = Deviation.between(DESIRED, moved(task, program, x), chains, DES.gravity)
+    expected = [(deviation.value(key) / most) ** 2 for key, most in metric.items()]
+    np.testing.assert_allclose(program.values(x).budgets, expected, rtol=1e-2)
+
+
+def test_the_same_weight_in_all_axes_needs_none_of_them():
+    assert not in_ground_axes(Reduction(axes="report"))
+    assert in_ground_axes(Reduction(axes="report", r1=np.diag([0.0, 2.0, 0.0])))
+    assert not in_ground_axes(Reduction(axes="seat", r1=np.diag([0.0, 2.0, 0.0])))

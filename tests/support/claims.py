@@ -1,0 +1,59 @@
+"""What a solution claims, for the verification: a profile round a motion or a problem."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from des_cli.model.machine import JOINTS, Machine, Seat
+from des_cli.model.machines import DES
+from des_cli.model.motion import Motion
+from des_cli.model.profile import JointCommands, Profile, Reduction
+from des_cli.model.run import Check
+from des_cli.model.solution import Solution
+from des_cli.reduction.problem import Problem
+from des_cli.verify.budgets import measure
+from des_cli.verify.claim import Claim
+from des_cli.verify.verify import verify
+
+
+def profile_of(motion: Motion, reduction: Reduction, machine: Machine = DES) -> Profile:
+    """A profile that asks for a motion, by joint commands."""
+    command = JointCommands(
+        arm_rate=motion.rate[:, 0],
+        position=motion.angle[:, 1:],
+        rate_start=motion.rate_start[:, 1:],
+        rate_end=motion.rate_end[:, 1:],
+    )
+    return Profile("claim", motion.t, command, machine, seat=Seat(), reduction=reduction)
+
+
+def checks_of_factors(
+    problem: Problem, solution: Solution, reduction: Reduction
+) -> tuple[Check, ...]:
+    """Verify factors; ends, held joints and limits are those of the problem."""
+    reduction = replace(
+        reduction,
+        ends=problem.ends,
+        hold=frozenset(np.array(JOINTS)[problem.held].tolist()),
+        limits="warn" if problem.machine is None else "enforce",
+    )
+    profile = profile_of(problem.desired, reduction, problem.machine or DES)
+    desired = problem.desired
+    return verify(profile, desired, desired, profile.seat, solution, problem)
+
+
+def failed_of_factors(problem: Problem, solution: Solution, reduction: Reduction) -> list[str]:
+    """The keys of the checks that fail."""
+    return [c.key for c in checks_of_factors(problem, solution, reduction) if not c.ok]
+
+
+def spent_of_factors(
+    problem: Problem, solution: Solution, metric: str, asked: Motion | None = None
+) -> float:
+    """The value of a metric against the desired motion, or another, from the motions alone."""
+    profile = profile_of(problem.desired, Reduction(), problem.machine or DES)
+    desired = problem.desired
+    claim = Claim(profile, asked or desired, desired, profile.seat, solution, problem)
+    return measure(claim, metric, claim.after)
