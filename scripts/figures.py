@@ -18,6 +18,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -185,7 +186,7 @@ def _dots(panel: Axes, pen: Pen, x: Sequence[float], y: Sequence[float], origin:
     if pen.width:
         start = [0.0, *x], [origin, *y]
         panel.plot(*start, color=pen.color, linestyle=pen.dashes, linewidth=1.5, zorder=3)
-    look = {"linestyle": "", "markeredgecolor": "white", "markeredgewidth": 0.8}
+    look: dict[str, Any] = {"linestyle": "", "markeredgecolor": "white", "markeredgewidth": 0.8}
     size = 9.0 if pen is STUDY else 5.5
     panel.plot(x, y, marker=pen.marker, color=pen.color, markersize=size, zorder=4, **look)
 

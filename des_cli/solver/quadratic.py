@@ -57,6 +57,7 @@ class Rows(Protocol):
     def add_to(self, band: SymmetricBand, stiffness: Floats) -> None:
         """Add ``rows' diag(stiffness) rows`` to a band."""
 
+
 HOPELESS = 1e60
 """Relative size of a multiplier, or of the inverse of a slack, beyond which nothing can be
 inside: both would grow until they overflow."""
