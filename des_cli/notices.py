@@ -101,11 +101,11 @@ def _bought(metrics: dict[str, Any]) -> str:
             "nothing was gained"
         )
     # Of components in the study's axes the pilot feels none: only who weighs them hears of them.
-    axes = metrics["solver"]["axes"]
+    axes = metrics["solver"].get("axes")
     grown = [
         f"{component.label} grew by {-100 * reduction:.0f} %"
         for component in COMPONENTS
-        if axes == "report" or component.axes != "report"
+        if axes != "seat" or component.axes != "report"
         if (reduction := parts[component.key]["reduction"]) is not None and reduction < -BOUGHT
     ]
     return f"one component was bought with another: {', '.join(grown)}" if grown else ""

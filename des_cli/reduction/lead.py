@@ -32,7 +32,7 @@ class Led:
     motion : Motion
         From rest to rest where both leads are there; the maneuver keeps its times.
     trouble : str
-        Empty, or which lead is too short, and how long it must be.
+        Empty, or which lead breaks a limit, and which one does not.
     """
 
     motion: Motion
@@ -58,12 +58,18 @@ def add_leads(machine: Machine, motion: Motion, lead_in: float, lead_out: float)
             continue
         lead = _lead(motion, duration, after=after)
         if broken := find_violations(machine, lead, "modified"):
-            needed = _shortest(machine, motion, after=after)
+            other = _shortest(machine, motion, after=after)
             joints = ", ".join(joint for joint in JOINTS if joint in {v.joint for v in broken})
-            trouble = f"{name}: {duration:g} s is too short for the {joints}"
-            trouble += f"; it takes {needed:.3g} s" if needed else "; no lead keeps the limits"
+            trouble = f"{name}: in {duration:g} s the {joints} cannot keep its limits ({broken[0]})"
+            trouble += f"; in {_rounded_up(other)} s it can" if other else "; no lead does"
         led = _joined(led, lead) if after else _joined(lead, led)
     return Led(led, trouble)
+
+
+def _rounded_up(duration: float) -> str:
+    """Write a duration [s] with three digits, not below itself."""
+    digits = 2 - int(np.floor(np.log10(duration)))
+    return f"{np.ceil(duration * 10.0**digits) / 10.0**digits:g}"
 
 
 def _lead(motion: Motion, duration: float, *, after: bool) -> Motion:

@@ -33,7 +33,8 @@ def tie_reversals(grid: SplineGrid, control: Floats) -> tuple[Tie, ...]:
     ties: list[Tie] = []
     for joint in range(control.shape[1]):
         rate = knots[:, joint]
-        still = np.abs(rate) <= STILL * np.max(np.abs(rate), initial=0.0)
+        largest = float(np.max(np.abs(rate), initial=0.0))
+        still = np.abs(rate) <= max(STILL * largest, NEXT_TO_NOTHING)
         for k in np.flatnonzero(still):
             bound = max(NEXT_TO_NOTHING, 2.0 * abs(float(rate[k])))
             ties.append(Tie(float(grid.knots[k]), joint, bound))
@@ -58,4 +59,5 @@ def _root(c: float, b: float, a: float) -> float:
     roots = [c / large] if large else []
     if a:
         roots.append(large / a)
-    return float(min(roots, key=lambda u: abs(u - 0.5)))
+    nearest = min(roots, key=lambda u: abs(u - 0.5), default=0.5)
+    return float(min(max(nearest, 0.0), 1.0))

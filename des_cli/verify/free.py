@@ -33,13 +33,14 @@ STILL = 1e-9
 """Mean square of the weighted cross-coupling [rad^2/s^4] that costs are relative to at the
 least: a maneuver without any costs nothing, and rounding is no error of it."""
 
-OPTIMALITY_TOLERANCE, MOST_TOLERANCE = 2e-2, 0.25
+OPTIMALITY_TOLERANCE, MOST_TOLERANCE = 2e-2, 0.3
 """Slope that may be left, relative to the desired motion's or the solution's own: of all
 directions together, in the root of the sum of squares. A method minimises over smooth
 motions, with a little weight on their jerk, and its table is these in steps. Measured on
 optima of the built-in maneuvers it is 2e-5 to 5e-3, and 0.01 to 0.08 where the steps are
 0.1 s; a motion that leaves half of its budgets has 0.7 to 1. With coarse steps the
-tolerance grows, to MOST_TOLERANCE: of a hundred random maneuvers one had 0.11 at 27 ms."""
+tolerance grows, to MOST_TOLERANCE: of 270 random maneuvers one had 0.11 at 27 ms and
+one 0.29 at 183 ms."""
 
 BLEND = 0.1
 """Weight of the felt error in the objective ``blend``."""
