@@ -36,7 +36,7 @@ def metrics(
     coriolis["vector"] = {"reduction": vector}
     quiet = {"at_acceleration_limit": 0.0, "acceleration_sign_changes": 2}
     return {
-        "solver": {"status": status, "message": "off by 1e-7"} | (solver or {}),
+        "solver": {"status": status, "axes": "report", "message": "off by 1e-7"} | (solver or {}),
         "coriolis": {**coriolis, "objective": {"reduction": objective}},
         "executable": {"joint_change_max_rad": {"arm": 0.0, "fork": 0.5 * change, "cab": change}},
         "fidelity": {

@@ -11,7 +11,7 @@ from des_cli.files.findings import Findings
 from des_cli.files.sections import Section
 from des_cli.model.arrays import Floats
 from des_cli.model.metric import METRICS, STUDY_METRIC, Budget, MetricKey
-from des_cli.model.profile import Reduction
+from des_cli.model.profile import FELT_BUDGETS, Reduction
 
 _PLAIN = (
     "method",
@@ -87,6 +87,9 @@ def defaults_beside(given: Mapping[str, Any]) -> dict[str, Any]:
       ``method: zero`` one for each, since a single one could only stand still;
     - the ends are free.
 
+    One factor for all joints (``control: scalar``) is within the felt budgets, but for the
+    one on the peak: it cannot bring down a corner of one joint that was rounded already.
+
     What the section gives by itself goes before all of these.
 
     Parameters
@@ -105,7 +108,10 @@ def defaults_beside(given: Mapping[str, Any]) -> dict[str, Any]:
     zero = given.get("method") == "zero"
     weighted = any(key in given for key in _WEIGHTS)
     if not (zero or weighted or given.get("algorithm") == "report-sweep"):
-        return {}
+        if given.get("control") != "scalar":
+            return {}
+        peak: MetricKey = "seat_angular_acceleration_peak_ratio"
+        return {"budget": tuple(each for each in FELT_BUDGETS if each.metric != peak)}
     return {"budget": (), "control": "per-joint" if zero else "scalar", "ends": "free"}
 
 

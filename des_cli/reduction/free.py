@@ -5,8 +5,9 @@ to the optimum, every iterate inside the limits and within the budgets.
 
 A budget on what is felt makes a problem with one optimum. Budgets on joint angles or on
 G alone leave fast motions free that neither sees: the optimum chatters, and there are
-several. Such a problem is solved on a coarse grid first, from two starts (the executable
-motion, and down from budgets many times as large), and then refined.
+several. Such a problem is solved on a coarse grid first, from three starts (the executable
+motion, down from budgets many times as large, and through budgets on the seat's rate), and
+then refined.
 """
 
 from __future__ import annotations
@@ -67,6 +68,9 @@ FEW = 250
 
 DOWN = (16.0, 8.0, 4.0, 2.0, 1.0)
 """Multiples of the budgets that the second start of an ill-posed problem comes down by."""
+
+SEAT_RATES = (0.1, 0.4, None)
+"""Budgets on the seat's rate beside the others through which the third start goes."""
 
 GAP, TOLERANCE = 1e-7, 1e-6
 """Where a minimisation ends: complementarity, relative to the desired cross-coupling, and
@@ -266,12 +270,28 @@ class _Search:
             return self._unreachable(program, fit)
         if self.well_posed:
             return inside, False
-        first = self._minimise(program, inside, rough=True, warm=False)
-        second = self._from_above(fit, budgets)
-        best = first
-        if second is not None and second.values.cost < first.values.cost:
-            best = second
+        found = [
+            self._minimise(program, inside, rough=True, warm=False),
+            self._from_above(fit, budgets),
+            self._by_seat_rate(fit, budgets, inside),
+        ]
+        best = min((each for each in found if each), key=lambda each: each.values.cost)
         return best.x, True
+
+    def _by_seat_rate(
+        self, fit: ExecutableSpline, budgets: Sequence[Budget], x: Floats
+    ) -> Outcome | None:
+        """Return the solution that is reached through ever looser budgets on the seat's rate."""
+        outcome: Outcome | None = None
+        for most in SEAT_RATES:
+            further = [] if most is None else [Budget(WELL_POSED, most)]
+            program = self._program(fit, [*budgets, *further])
+            inside = find_inside(program, x, self.log)
+            if inside is None:
+                return None
+            outcome = self._minimise(program, inside, rough=True, warm=False)
+            x = outcome.x
+        return outcome
 
     def _from_above(self, fit: ExecutableSpline, budgets: Sequence[Budget]) -> Outcome | None:
         """Return the solution that is reached from budgets many times as large."""

@@ -111,7 +111,7 @@ def _joined(first: Motion, second: Motion) -> Motion:
 
 
 def _shortest(machine: Machine, motion: Motion, *, after: bool) -> float | None:
-    """Return the shortest lead that keeps the limits [s], rounded up as it is told, or None."""
+    """Return the shortest lead that keeps the limits [s], or None."""
 
     def keeps(duration: float) -> bool:
         return not find_violations(machine, _lead(motion, duration, after=after), "modified")
@@ -125,5 +125,4 @@ def _shortest(machine: Machine, motion: Motion, *, after: bool) -> float | None:
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if keeps(middle) else (middle, high)
-    last_digit = 10.0 ** (np.floor(np.log10(high)) - 2.0)
-    return float(np.ceil(high / last_digit) * last_digit)
+    return high
