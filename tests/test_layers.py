@@ -79,7 +79,7 @@ def test_every_module_that_solves_is_in_the_architecture() -> None:
     rows = re.findall(r"^\| (`.+?) \|", table, re.M)
     named = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
     rooms = ("solver", "study", "reduction")
-    modules = {path.stem for room in rooms for path in (ROOT / room).glob("*.py")} - {"__init__"}
+    modules = {path.stem for room in rooms for path in (ROOT / room).rglob("*.py")} - {"__init__"}
     assert set(named) - set(rooms) == modules
 
 

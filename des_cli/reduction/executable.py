@@ -19,7 +19,7 @@ import numpy as np
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine
 from des_cli.model.motion import Motion
-from des_cli.reduction.limit_rows import LimitRows
+from des_cli.reduction.free.limit_rows import LimitRows
 from des_cli.reduction.limits import angle_magnitude, find_violations, measure_peaks
 from des_cli.reduction.reference import sample_motion
 from des_cli.solver.band import SymmetricBand
@@ -266,13 +266,14 @@ def _eased(machine: Machine, desired: Motion) -> list[JointLimits]:
     """Return the limits within which corners are rounded for factors on the rates."""
     peaks = measure_peaks(desired)
     return [
-        replace(
-            limit,
-            acceleration=float(np.clip(peak, CORNER * limit.acceleration, limit.acceleration)),
-            jerk=limit.jerk if np.isinf(limit.jerk) else CORNER * limit.jerk,
-        )
-        for limit, peak in zip(machine.limits, peaks.acceleration, strict=True)
+        replace(limit, acceleration=_between(a, limit.acceleration), jerk=_between(j, limit.jerk))
+        for limit, a, j in zip(machine.limits, peaks.acceleration, peaks.jerk, strict=True)
     ]
+
+
+def _between(peak: float, limit: float) -> float:
+    """Return what a corner is rounded at: what is needed elsewhere, at least CORNER."""
+    return limit if np.isinf(limit) else float(np.clip(peak, CORNER * limit, limit))
 
 
 def _start_trouble(desired: Motion, limits: Sequence[JointLimits]) -> str:

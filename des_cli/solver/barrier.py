@@ -30,11 +30,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, Literal, Protocol, TypeAlias, TypeVar
+from typing import Generic, Literal, TypeAlias
 
 import numpy as np
 
 from des_cli.model.arrays import Floats
+from des_cli.solver.feasible_program import E, Expansion, Program, System, Values
 
 BoundaryStatus: TypeAlias = Literal["converged", "iteration-limit", "stalled"]
 
@@ -74,96 +75,6 @@ SHARE_HALVINGS = 5
 
 SHIFTS = (1e-12, 1e-10, 1e-8, 1e-6)
 """Relative shifts of the diagonal, tried where even the convex part is singular to rounding."""
-
-
-@dataclass(frozen=True, slots=True)
-class Values:
-    """A program's functions at a point: cost, budgets (j,), local bounds (k,)."""
-
-    cost: float
-    budgets: Floats
-    local: Floats
-
-
-class Expansion(Protocol):
-    """A program's functions at a point, with first derivatives, and a Hessian inside.
-
-    Vectors are those of the full space, (N,).
-    """
-
-    @property
-    def cost(self) -> float:
-        """The cost."""
-
-    @property
-    def budgets(self) -> Floats:
-        """Values of the budgets, (j,)."""
-
-    @property
-    def gradient(self) -> Floats:
-        """Of the cost, (N,)."""
-
-    @property
-    def budget_gradients(self) -> Floats:
-        """Of the budgets, as columns, (N, j)."""
-
-    def local_change(self, step: Floats) -> Floats:
-        """Return the derivative of the local bounds along a step, (k,)."""
-
-    def local_adjoint(self, multiplier: Floats) -> Floats:
-        """Return the transposed derivative times multipliers, (N,)."""
-
-
-class System(Protocol):
-    """A factorised positive definite system."""
-
-    def solve(self, right: Floats) -> Floats:
-        """Solve for columns of the full space, (N, r): reduce, solve, expand again."""
-
-
-E = TypeVar("E", bound=Expansion)
-
-
-class Program(Protocol[E]):
-    """What the method needs to know of a problem."""
-
-    @property
-    def bounds(self) -> Floats:
-        """Of the linear rows, (m,)."""
-
-    def linear(self, x: Floats) -> Floats:
-        """Return the linear rows' values, (m,)."""
-
-    def linear_change(self, step: Floats) -> Floats:
-        """Return what a step changes of them."""
-
-    def linear_adjoint(self, multiplier: Floats) -> Floats:
-        """Return the transposed rows times multipliers, (N,)."""
-
-    def values(self, x: Floats) -> Values:
-        """Evaluate the functions."""
-
-    def expand(
-        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
-    ) -> E:
-        """Evaluate with derivatives.
-
-        Parameters
-        ----------
-        x : (N,) array
-        budget, local : (j,), (k,) array
-            Multipliers, for the Hessian of the Lagrangian.
-        stiffness : (k,) array
-            Weights of ``grad h grad h'`` that the barrier adds.
-        share : float
-            Of the curvature part of the Hessian, 0 to 1.
-        """
-
-    def system(self, expansion: E, stiffness: Floats, shift: float) -> System | None:
-        """Factorise the Hessian and ``rows' diag(stiffness) rows``; None if not convex."""
-
-    def reduce(self, gradient: Floats) -> Floats:
-        """Return a gradient by the free unknowns, zero where nothing moves."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,6 +31,10 @@ ROOM = 0.1
 HOPELESS = 1e12
 """Gap, relative to the cost, at which multipliers run away because nothing is feasible."""
 
+FAR, PENALTIES = 2.0, 14
+"""Limited values, relative to their limits, from which on a start is calmed, and how many
+penalties, each ten times the one before, are tried."""
+
 MAX_ITERATIONS = 80
 
 FRACTION = 0.995
@@ -110,7 +114,8 @@ class _Search:
         slack = self._slack()
         if np.all(slack > 0.0):
             return QuadraticOutcome(self.x, True, 0.0, 0)
-        slack = np.maximum(slack, ROOM * bounds)
+        self.x = self._calmed()
+        slack = np.maximum(self._slack(), ROOM * bounds)
         dual = 1e-2 * self.size / len(slack) / slack
         iterations, before = 0, np.inf
         while iterations < MAX_ITERATIONS:
@@ -138,6 +143,24 @@ class _Search:
             dual = dual + min(1.0, FRACTION * _longest(dual, dual_change)) * dual_change
         worst = float(np.max(-self._slack() / bounds, initial=0.0))
         return QuadraticOutcome(self.x, worst <= ACCEPTED, worst, iterations)
+
+    def _calmed(self) -> Floats:
+        """Return a start that breaks no limit by far: noisy targets break some hundredfold.
+
+        It minimises the cost and a penalty on the squares of the limited values, the
+        smallest of a sequence that is large enough.
+        """
+        x, bounds = self.x, self.rows.bounds
+        still = self.rows.value(np.zeros_like(x))
+        weight = self.size / len(bounds)
+        for _ in range(PENALTIES):
+            if np.max(np.abs(self.rows.value(x)) / bounds) <= FAR:
+                break
+            stiffness = weight / bounds**2
+            push = self.linear - self.rows.adjoint(stiffness * still)
+            x = self._solve(self._factorise(stiffness), push)
+            weight *= 10.0
+        return x
 
     def _slack(self) -> Floats:
         value = self.rows.value(self.x)

@@ -107,7 +107,7 @@ FELT = (
     [
         ("", FELT),
         ("{axes: report}", FELT),
-        ("{control: scalar}", FELT),
+        ("{control: scalar}", FELT[:3]),
         ("{budget: 0.1}", (Budget("joint_deviation_relative", 0.1),)),
         ("{budget: {seat_g_rms_error_g: 0.2}}", (Budget("seat_g_rms_error_g", 0.2),)),
         (

@@ -9,7 +9,8 @@ import pytest
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from scipy.optimize import minimize as scipy_minimize
 
-from des_cli.solver.barrier import Options, Values, minimise
+from des_cli.solver.barrier import Options, minimise
+from des_cli.solver.feasible_program import Values
 
 
 @dataclass

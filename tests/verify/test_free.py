@@ -15,8 +15,8 @@ from des_cli.model.metric import Budget
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.model.profile import Reduction
 from des_cli.reduction.fidelity import Deviation
-from des_cli.reduction.free import find_free_motion
-from des_cli.reduction.free_problem import FreeTask
+from des_cli.reduction.free.method import find_free_motion
+from des_cli.reduction.free.problem import FreeTask
 from des_cli.verify.verify import verify
 from tests.reduction.conftest import make_cobra
 from tests.support.claims import profile_of

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.reduction.limit_rows import LimitRows
-from des_cli.reduction.windows import JOINTS, POINTS, Windows
+from des_cli.reduction.free.limit_rows import LimitRows
+from des_cli.reduction.free.windows import JOINTS, POINTS, Windows
 from des_cli.solver.band import BandCholesky, SymmetricBand
 from des_cli.solver.spline import Ends
 
 if TYPE_CHECKING:
-    from des_cli.reduction.motion_program import MotionProgram
+    from des_cli.reduction.free.program import MotionProgram
 
 
 class MotionExpansion:

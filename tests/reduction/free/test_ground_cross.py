@@ -8,7 +8,7 @@ import pytest
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES, JOHNSVILLE
-from des_cli.reduction.ground_cross import GROUND_VARIABLES, GroundCross, squares_of
+from des_cli.reduction.free.ground_cross import GROUND_VARIABLES, GroundCross, squares_of
 
 STEP = 1e-6
 M = 12

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from des_cli.model.machine import JointLimits
-from des_cli.reduction.limit_rows import LimitRows, Tie
+from des_cli.reduction.free.limit_rows import LimitRows, Tie
 from des_cli.solver.band import SymmetricBand
 from des_cli.solver.spline import Ends, SplineGrid
 

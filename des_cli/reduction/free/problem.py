@@ -19,20 +19,20 @@ from des_cli.model.metric import Budget, MetricKey
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
-from des_cli.reduction.ground_cross import GroundCross
-from des_cli.reduction.limit_rows import LimitRows, Tie
-from des_cli.reduction.local_bounds import (
+from des_cli.reduction.free.ground_cross import GroundCross
+from des_cli.reduction.free.limit_rows import LimitRows, Tie
+from des_cli.reduction.free.local_bounds import (
     AttitudeBound,
     ComponentBound,
     LocalBound,
     NormBound,
     OnsetBound,
 )
-from des_cli.reduction.motion_program import SEAT_VARIABLES, FreeSeat, JointBudget, MotionProblem
+from des_cli.reduction.free.program import SEAT_VARIABLES, FreeSeat, MotionProblem
+from des_cli.reduction.free.terms import JointBudget, Term, value_of
+from des_cli.reduction.free.windows import JOINTS as COMPONENTS
+from des_cli.reduction.free.windows import Windows
 from des_cli.reduction.reference import sample_motion
-from des_cli.reduction.terms import Term, value_of
-from des_cli.reduction.windows import JOINTS as COMPONENTS
-from des_cli.reduction.windows import Windows
 from des_cli.solver.spline import Ends, SplineGrid
 from des_cli.units import STANDARD_GRAVITY_M_S2
 

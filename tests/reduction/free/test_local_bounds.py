@@ -11,13 +11,13 @@ from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import VARIABLES, seat_forms
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
-from des_cli.reduction.local_bounds import (
+from des_cli.reduction.free.local_bounds import (
     AttitudeBound,
     ComponentBound,
     NormBound,
     OnsetBound,
 )
-from des_cli.reduction.terms import value_of
+from des_cli.reduction.free.terms import value_of
 
 STEP = 1e-6
 M = 8

@@ -13,21 +13,19 @@ then refined.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.coriolis import coriolis
-from des_cli.kinematics.response import respond_on
 from des_cli.kinematics.seat_turn import seat_turns
 from des_cli.kinematics.twist import seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
-from des_cli.model.metric import METRICS, Budget, MetricKey
-from des_cli.model.motion import Motion, integrate_sides
-from des_cli.model.profile import Axes, Reduction
-from des_cli.model.solution import Iteration, Solution, Status
+from des_cli.model.metric import Budget, MetricKey
+from des_cli.model.motion import Motion
+from des_cli.model.profile import Reduction
+from des_cli.model.solution import Iteration
 from des_cli.reduction.executable import (
     ExecutableSpline,
     fit_for_table,
@@ -35,21 +33,21 @@ from des_cli.reduction.executable import (
     sample_spline,
 )
 from des_cli.reduction.fidelity import Deviation
-from des_cli.reduction.free_problem import (
+from des_cli.reduction.free.answers import Answers, FreeResult, StepLog
+from des_cli.reduction.free.inside import find_inside
+from des_cli.reduction.free.limit_rows import Tie
+from des_cli.reduction.free.problem import (
     AT_POINTS,
     SEAT_ANGLES,
     FreeTask,
     cross_coupling,
-    in_ground_axes,
     pose_motion,
     turned_seat,
 )
-from des_cli.reduction.inside import find_inside
-from des_cli.reduction.limit_rows import Tie
+from des_cli.reduction.free.program import MotionProgram
+from des_cli.reduction.free.ties import tie_reversals
 from des_cli.reduction.limits import find_occupant_violations, find_violations
-from des_cli.reduction.motion_program import MotionProgram
-from des_cli.reduction.ties import tie_reversals
-from des_cli.solver.barrier import Options, Outcome, Step, minimise
+from des_cli.solver.barrier import Options, Outcome, minimise
 from des_cli.solver.spline import SplineGrid
 
 WELL_POSED: MetricKey = "seat_rate_deviation_relative"
@@ -82,10 +80,6 @@ ROUGH_GAP = 1e-3
 START_GAP, WARM_GAP = 3.0, 1e-2
 """Complementarity that a search begins with, from far away and near the optimum."""
 
-ACCEPTABLE = 1e-4
-"""Complementarity at which a search that did not converge is good enough to be used: its
-cost is within this of a minimum's."""
-
 ROOM = 1e-4
 """Share of each budget that is left to the table, which is a little other than the spline."""
 
@@ -108,43 +102,6 @@ LEFT = 0.999
 """Share of the budget that binds which a table should spend, at least."""
 
 
-@dataclass(frozen=True)
-class FreeResult:
-    """A free motion, and what it started from.
-
-    Parameters
-    ----------
-    desired : Motion
-        The executable motion nearest to the reference.
-    solution : Solution
-    seat : Seat
-        As fixed in the modified motion.
-    """
-
-    desired: Motion
-    solution: Solution
-    seat: Seat
-
-
-@dataclass
-class _Log:
-    """One numbered log over all minimisations of a solution, within one limit."""
-
-    limit: int
-    report: Callable[[Iteration], None] | None
-    lines: list[Iteration] = field(default_factory=list)
-
-    @property
-    def left(self) -> int:
-        return max(0, self.limit - len(self.lines))
-
-    def __call__(self, step: Step) -> None:
-        line = Iteration(len(self.lines), step.cost, 0.0, step.optimality, step.length)
-        self.lines.append(line)
-        if self.report is not None:
-            self.report(line)
-
-
 def find_free_motion(
     task: FreeTask, report: Callable[[Iteration], None] | None = None
 ) -> FreeResult:
@@ -162,36 +119,37 @@ def find_free_motion(
         Its solution is ``infeasible`` where no executable motion keeps the budgets, and
         passed through where the desired motion makes no cross-coupling.
     """
-    search = _Search(task, _Log(task.reduction.max_iterations, report))
+    search = _Search(task, StepLog(task.reduction.max_iterations, report))
     return search.run()
 
 
 class _Search:
-    def __init__(self, task: FreeTask, log: _Log) -> None:
+    """The search for one task: its grids, its starts, and the budgets of its table."""
+
+    def __init__(self, task: FreeTask, log: StepLog) -> None:
         self.task, self.log = task, log
+        self.answers = Answers(task, log)
         self.t = task.reference.t
-        budget = task.reduction.budget
-        felt = any(b.metric in WELL_POSED for b in budget)
         self.warm = False
-        self.well_posed = felt or task.reduction.objective != "coriolis"
+        self.well_posed = any(b.metric == WELL_POSED for b in task.reduction.budget)
 
     def run(self) -> FreeResult:
         if not seat_forms(self.task.chain, self.task.machine.gravity).vertical:
             why = "free joints need an arm that turns about the vertical; take --control scalar"
-            return self._refused(self.task.reference, why)
+            return self.answers.refused(self.task.reference, why)
         fixed = {name for name in self.task.reduction.optimise if name in SEAT_ANGLES}
         if missing := sorted(fixed - set(seat_turns(self.task.machine, self.task.seat))):
             why = f"the machine has no {' and no '.join(missing)} beyond its cab to be found"
-            return self._refused(self.task.reference, why)
+            return self.answers.refused(self.task.reference, why)
         grids = self._grids()
         fits = [self._fit(grid) for grid in grids]
         finest = fits[-1]
         desired = self._desired(finest)
         if finest.trouble:
-            return self._refused(desired, finest.trouble)
+            return self.answers.refused(desired, finest.trouble)
         energy = cross_coupling(self.task, finest.grid)
         if energy <= NOTHING * finest.grid.duration:
-            return self._passed_through(desired)
+            return self.answers.passed_through(desired)
         budgets = tuple(replace(b, most=b.most * (1.0 - ROOM)) for b in self.task.reduction.budget)
         outcome: Outcome | None = None
         x = start = np.zeros(0)
@@ -202,7 +160,7 @@ class _Search:
             if outcome is None:
                 started = self._start(program, fit, level_budgets)
                 if isinstance(started, str):
-                    return self._refused(desired, started)
+                    return self.answers.refused(desired, started)
                 x, warm = started
             else:
                 x, warm = _refined(fits[level - 1], fit, x), True
@@ -211,7 +169,7 @@ class _Search:
                     x, warm = np.zeros(program.size), False
                     inside = find_inside(program, x, self.log)
                 if inside is None:
-                    return self._refused(desired, self._unreachable(program, fit))
+                    return self.answers.refused(desired, self.answers.unreachable(program, fit))
                 warm = warm and inside is x
                 x = inside
             start, self.warm = x, warm
@@ -267,7 +225,7 @@ class _Search:
         """Return where to begin and whether that is near the optimum, or why nowhere."""
         inside = find_inside(program, np.zeros(program.size), self.log)
         if inside is None:
-            return self._unreachable(program, fit)
+            return self.answers.unreachable(program, fit)
         if self.well_posed:
             return inside, False
         found = [
@@ -367,7 +325,7 @@ class _Search:
             if inside is None:
                 break
             outcome = self._minimise(program, inside, rough=False, warm=self.warm)
-        return FreeResult(desired, self._solution(outcome, modified, desired, seat), seat)
+        return self.answers.found(outcome, modified, desired, seat)
 
     def _beyond(self, deviation: Deviation, modified: Motion, seat: Seat) -> float:
         """Return by how much the table exceeds a bound on what the occupant gets, relative."""
@@ -390,110 +348,6 @@ class _Search:
             seat = turned_seat(self.task, program.seat_angles(x))
         return sample_spline(spline, self.t), seat
 
-    def _solution(
-        self, outcome: Outcome, modified: Motion, desired: Motion, seat: Seat
-    ) -> Solution:
-        status, message = self._verdict(outcome)
-        return Solution(
-            status=status,
-            message=message,
-            control=self._factors(modified, desired),
-            modified=modified,
-            adjoint=np.zeros((len(self.t), 0)),
-            cost=self._cost(modified, seat),
-            cost_unreduced=self._cost(self.task.reference, self.task.seat),
-            optimality=outcome.optimality,
-            iterations=len(self.log.lines),
-            log=tuple(self.log.lines),
-        )
-
-    def _verdict(self, outcome: Outcome) -> tuple[Status, str]:
-        steps = f"{len(self.log.lines)} steps in all"
-        if outcome.status == "converged":
-            return "converged", f"first-order optimal to {outcome.optimality:.1e}, {steps}"
-        off = (
-            f"the first-order conditions are off by {outcome.optimality:.1e}, "
-            f"the gap is {outcome.gap:.1e}"
-        )
-        if outcome.gap <= ACCEPTABLE:
-            return "acceptable", f"short of the tolerance {TOLERANCE:g}: {off}; {steps}"
-        if outcome.status == "iteration-limit":
-            limit = self.log.limit
-            return "iteration-limit", f"{off} after {steps}; raise max_iterations ({limit})"
-        return "diverged", f"no step makes it better although {off}; {steps}"
-
-    def _factors(self, modified: Motion, desired: Motion) -> Floats:
-        """Return the factors on the desired rates that a tied motion has, one a joint."""
-        if self.task.reduction.control != "per-joint":
-            return np.zeros((len(self.t), 0))
-        moving = np.abs(desired.rate) > MOVING * np.max(np.abs(desired.rate), axis=0)
-        return np.divide(modified.rate, desired.rate, out=np.ones_like(desired.rate), where=moving)
-
-    def _cost(self, motion: Motion, seat: Seat) -> float:
-        """Return J = 1/2 int c' R1 c dt of a motion as its table plays it."""
-        chain = chain_of(self.task.machine, seat)
-        axes: Axes = "report" if in_ground_axes(self.task.reduction) else "seat"
-        c = coriolis(chain, motion.angle_sides, motion.rate_sides, axes)
-        running = np.sum((c @ self.task.reduction.r1) * c, axis=-1)
-        return 0.5 * float(integrate_sides(motion.step, running))
-
-    def _passed_through(self, desired: Motion) -> FreeResult:
-        solution = Solution(
-            status="converged",
-            message="the desired motion makes no cross-coupling: it is passed through",
-            control=self._factors(desired, desired),
-            modified=desired,
-            adjoint=np.zeros((len(self.t), 0)),
-            cost=self._cost(desired, self.task.seat),
-            cost_unreduced=self._cost(self.task.reference, self.task.seat),
-            optimality=0.0,
-            iterations=0,
-        )
-        return FreeResult(desired, solution, self.task.seat)
-
-    def _refused(self, desired: Motion, why: str) -> FreeResult:
-        nan = float("nan")
-        solution = Solution(
-            status="infeasible",
-            message=why,
-            control=self._factors(desired, desired),
-            modified=desired,
-            adjoint=np.zeros((len(self.t), 0)),
-            cost=nan,
-            cost_unreduced=nan,
-            optimality=nan,
-            iterations=len(self.log.lines),
-            log=tuple(self.log.lines),
-        )
-        return FreeResult(desired, solution, self.task.seat)
-
-    def _unreachable(self, program: MotionProgram, fit: ExecutableSpline) -> str:
-        """Say which budgets the limits alone exceed."""
-        values = program.values(np.zeros(program.size))
-        budgets = [b for b in self.task.reduction.budget if b.metric not in AT_POINTS]
-        over = [
-            f"{METRICS[b.metric].label} {np.sqrt(value) * b.most:.3g} instead of {b.most:.3g}"
-            for b, value in zip(budgets, values.budgets, strict=True)
-            if value >= 1.0
-        ]
-        if over and self.task.reduction.limits != "enforce":
-            return (
-                "no smooth motion comes nearer to the steps of what the profile asks for than "
-                f"{', '.join(over)}; smooth it, or allow more"
-            )
-        if over:
-            return (
-                "keeping the machine's limits alone costs more than the budgets allow: "
-                f"{', '.join(over)}; smooth the motion, allow more, or take --limits warn"
-            )
-        task, desired = self.task, sample_spline(fit, self.t)
-        response = respond_on(task.chain, task.machine.gravity, desired)
-        broken = find_occupant_violations(task.machine, task.seat, response, desired, "desired")
-        return (
-            f"{'; '.join(str(violation) for violation in broken) or 'a bound is exceeded'}: no "
-            "motion within the budgets was found that keeps what the occupant may get"
-        )
-
 
 ROUGH_STEPS, STEPS = 120, 500
 """Newton steps of one minimisation on the way, and at the end, at the most: a problem that
@@ -501,9 +355,6 @@ has one optimum takes twenty."""
 
 COARSE_ROOM = 1e-2
 """Share of a bound at points that a coarse grid leaves to the finer ones."""
-
-MOVING = 1e-6
-"""Rate relative to its largest below which a factor on it means nothing."""
 
 MOST_SHARE = 1e3
 """Largest budget that the way down from above starts with."""

@@ -117,3 +117,25 @@ def squares(slopes: list[Floats]) -> Floats:
             total[at : at + _RATE_VARIABLES - k] += np.einsum("rm,lrm->lm", stacked[k], stacked[k:])
             at += VARIABLES - k
     return total
+
+
+@dataclass(frozen=True, eq=False)
+class JointBudget:
+    """Squared deviation of the joint angles, over that of a budget.
+
+    Parameters
+    ----------
+    scale : float
+        Quadrature weight over the squared budget [1/rad^2].
+    off : (3, p) array
+        Base angles minus the reference's, at all points [rad].
+    """
+
+    scale: float
+    off: Floats
+
+
+def square(residual: Floats) -> float:
+    """Return the sum of squares."""
+    flat = residual.reshape(-1)
+    return float(flat @ flat)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.reduction.limit_rows import Tie
+from des_cli.reduction.free.limit_rows import Tie
 from des_cli.solver.spline import SplineGrid
 
 STILL = 1e-6

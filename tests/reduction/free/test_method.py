@@ -13,7 +13,7 @@ from des_cli.model.machine import DHRow, OccupantBounds, Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
 from des_cli.reduction.fidelity import Deviation
-from des_cli.reduction.free import LEFT, find_free_motion
+from des_cli.reduction.free.method import LEFT, find_free_motion
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from tests.support.free_motions import ATTITUDE, JOINTS, RATE, TURNING, G, smooth, task_of
 

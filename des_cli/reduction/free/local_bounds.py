@@ -14,7 +14,7 @@ import numpy as np
 from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import VARIABLES, SeatMotion
 from des_cli.model.arrays import Floats
-from des_cli.reduction.terms import Quantity, curvature_of, slope_of, value_of
+from des_cli.reduction.free.terms import Quantity, curvature_of, slope_of, value_of
 
 
 class LocalBound(Protocol):

@@ -9,7 +9,7 @@ import pytest
 
 from des_cli.model.machine import OccupantBounds
 from des_cli.model.machines import DES
-from des_cli.reduction.inside import LITTLE_ROOM, ROOM, find_inside
+from des_cli.reduction.free.inside import LITTLE_ROOM, ROOM, find_inside
 from tests.support.free_motions import (
     JOINTS,
     RATE,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from des_cli.reduction.ties import NEXT_TO_NOTHING, tie_reversals
+from des_cli.reduction.free.ties import NEXT_TO_NOTHING, tie_reversals
 from des_cli.solver.spline import SplineGrid
 
 GRID = SplineGrid(0.3, 0.2, 20)

@@ -11,7 +11,7 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.twist import VARIABLES, seat_forms
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
-from des_cli.reduction.terms import Quantity, Term, curvature_of, slope_of, squares, value_of
+from des_cli.reduction.free.terms import Quantity, Term, curvature_of, slope_of, squares, value_of
 
 STEP = 1e-6
 M = 10

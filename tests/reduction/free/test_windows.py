@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from des_cli.reduction import windows
-from des_cli.reduction.windows import JOINTS, POINTS, WINDOW, Windows
+from des_cli.reduction.free import windows
+from des_cli.reduction.free.windows import JOINTS, POINTS, WINDOW, Windows
 from des_cli.solver.band import SymmetricBand
 from des_cli.solver.spline import SplineGrid
 

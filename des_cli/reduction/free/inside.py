@@ -13,9 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from des_cli.model.arrays import Flags, Floats
-from des_cli.reduction.motion_program import MotionProgram
-from des_cli.reduction.motion_system import MotionExpansion, MotionSystem
-from des_cli.solver.barrier import Options, Step, Values, minimise
+from des_cli.reduction.free.program import MotionProgram
+from des_cli.reduction.free.system import MotionExpansion, MotionSystem
+from des_cli.solver.barrier import Options, Step, minimise
+from des_cli.solver.feasible_program import Values
 
 ROOM = 0.02
 """Share of a squared budget that a start leaves: one that is nearly spent from the

@@ -10,10 +10,10 @@ import pytest
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.machine import OccupantBounds, Seat
 from des_cli.model.machines import DES
-from des_cli.reduction import windows
-from des_cli.reduction.ground_cross import GroundCross
-from des_cli.reduction.local_bounds import NormBound
-from des_cli.reduction.motion_program import MotionProgram
+from des_cli.reduction.free import windows
+from des_cli.reduction.free.ground_cross import GroundCross
+from des_cli.reduction.free.local_bounds import NormBound
+from des_cli.reduction.free.program import MotionProgram
 from tests.support.free_motions import (
     ATTITUDE,
     JOINTS,

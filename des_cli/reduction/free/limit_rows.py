@@ -15,7 +15,7 @@ import numpy as np
 
 from des_cli.model.arrays import Floats, Indices
 from des_cli.model.machine import JointLimits
-from des_cli.reduction.windows import JOINTS
+from des_cli.reduction.free.windows import JOINTS
 from des_cli.solver.band import SymmetricBand
 from des_cli.solver.spline import Ends, SplineGrid
 

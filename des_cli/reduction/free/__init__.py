@@ -1,0 +1,1 @@
+"""Joints that move freely: a spline of each, inside limits and within felt budgets."""

@@ -1,0 +1,191 @@
+"""What a search for a free motion ends with: a solution, or why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.coriolis import coriolis
+from des_cli.kinematics.response import respond_on
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import Seat
+from des_cli.model.metric import METRICS
+from des_cli.model.motion import Motion, integrate_sides
+from des_cli.model.profile import Axes
+from des_cli.model.solution import Iteration, Solution, Status
+from des_cli.reduction.executable import ExecutableSpline, sample_spline
+from des_cli.reduction.free.problem import AT_POINTS, FreeTask, in_ground_axes
+from des_cli.reduction.free.program import MotionProgram
+from des_cli.reduction.limits import find_occupant_violations
+from des_cli.solver.barrier import Outcome, Step
+
+ACCEPTABLE = 1e-4
+"""Complementarity at which a search that did not converge is good enough to be used: its
+cost is within this of a minimum's."""
+
+MOVING = 1e-6
+"""Rate relative to its largest below which a factor on it means nothing."""
+
+
+@dataclass(frozen=True)
+class FreeResult:
+    """A free motion, and what it started from.
+
+    Parameters
+    ----------
+    desired : Motion
+        The executable motion nearest to the reference.
+    solution : Solution
+    seat : Seat
+        As fixed in the modified motion.
+    """
+
+    desired: Motion
+    solution: Solution
+    seat: Seat
+
+
+@dataclass
+class StepLog:
+    """One numbered log over all minimisations of a solution, within one limit."""
+
+    limit: int
+    report: Callable[[Iteration], None] | None
+    lines: list[Iteration] = field(default_factory=list)
+
+    @property
+    def left(self) -> int:
+        """Steps that may still be taken."""
+        return max(0, self.limit - len(self.lines))
+
+    def __call__(self, step: Step) -> None:
+        """Add a step of a minimisation."""
+        line = Iteration(len(self.lines), step.cost, 0.0, step.optimality, step.length)
+        self.lines.append(line)
+        if self.report is not None:
+            self.report(line)
+
+
+class Answers:
+    """Solutions of one task.
+
+    Parameters
+    ----------
+    task : FreeTask
+    log : StepLog
+    """
+
+    def __init__(self, task: FreeTask, log: StepLog) -> None:
+        self.task, self.log = task, log
+        self._rows = len(task.reference.t)
+
+    def found(self, outcome: Outcome, modified: Motion, desired: Motion, seat: Seat) -> FreeResult:
+        """Return where a search ended."""
+        status, message = self._verdict(outcome)
+        return self._result(status, message, modified, desired, seat, outcome.optimality)
+
+    def passed_through(self, desired: Motion) -> FreeResult:
+        """Return the executable motion of a profile that makes no cross-coupling."""
+        message = "the desired motion makes no cross-coupling: it is passed through"
+        return self._result("converged", message, desired, desired, self.task.seat, 0.0)
+
+    def refused(self, desired: Motion, why: str) -> FreeResult:
+        """Return that there is no motion to be found."""
+        nan = float("nan")
+        solution = Solution(
+            status="infeasible",
+            message=why,
+            control=self._factors(desired, desired),
+            modified=desired,
+            adjoint=np.zeros((self._rows, 0)),
+            cost=nan,
+            cost_unreduced=nan,
+            optimality=nan,
+            iterations=len(self.log.lines),
+            log=tuple(self.log.lines),
+        )
+        return FreeResult(desired, solution, self.task.seat)
+
+    def _result(
+        self,
+        status: Status,
+        message: str,
+        modified: Motion,
+        desired: Motion,
+        seat: Seat,
+        optimality: float,
+    ) -> FreeResult:
+        solution = Solution(
+            status=status,
+            message=message,
+            control=self._factors(modified, desired),
+            modified=modified,
+            adjoint=np.zeros((self._rows, 0)),
+            cost=self._cost(modified, seat),
+            cost_unreduced=self._cost(self.task.reference, self.task.seat),
+            optimality=optimality,
+            iterations=len(self.log.lines),
+            log=tuple(self.log.lines),
+        )
+        return FreeResult(desired, solution, seat)
+
+    def _verdict(self, outcome: Outcome) -> tuple[Status, str]:
+        steps = f"{len(self.log.lines)} steps in all"
+        if outcome.status == "converged":
+            return "converged", f"first-order optimal to {outcome.optimality:.1e}, {steps}"
+        off = (
+            f"the first-order conditions are off by {outcome.optimality:.1e}, "
+            f"the gap is {outcome.gap:.1e}"
+        )
+        if outcome.gap <= ACCEPTABLE:
+            return "acceptable", f"not quite optimal: {off}; {steps}"
+        if outcome.status == "iteration-limit":
+            limit = self.log.limit
+            return "iteration-limit", f"{off} after {steps}; raise max_iterations ({limit})"
+        return "diverged", f"no step makes it better although {off}; {steps}"
+
+    def _factors(self, modified: Motion, desired: Motion) -> Floats:
+        """Return the factors on the desired rates that a tied motion has, one a joint."""
+        if self.task.reduction.control != "per-joint":
+            return np.zeros((self._rows, 0))
+        moving = np.abs(desired.rate) > MOVING * np.max(np.abs(desired.rate), axis=0)
+        return np.divide(modified.rate, desired.rate, out=np.ones_like(desired.rate), where=moving)
+
+    def _cost(self, motion: Motion, seat: Seat) -> float:
+        """Return J = 1/2 int c' R1 c dt of a motion as its table plays it."""
+        chain = chain_of(self.task.machine, seat)
+        axes: Axes = "report" if in_ground_axes(self.task.reduction) else "seat"
+        c = coriolis(chain, motion.angle_sides, motion.rate_sides, axes)
+        running = np.sum((c @ self.task.reduction.r1) * c, axis=-1)
+        return 0.5 * float(integrate_sides(motion.step, running))
+
+    def unreachable(self, program: MotionProgram, fit: ExecutableSpline) -> str:
+        """Say which budgets the limits alone exceed, or which bounds."""
+        task = self.task
+        values = program.values(np.zeros(program.size))
+        budgets = [b for b in task.reduction.budget if b.metric not in AT_POINTS]
+        over = [
+            f"{METRICS[b.metric].label} {np.sqrt(value) * b.most:.3g} instead of {b.most:.3g}"
+            for b, value in zip(budgets, values.budgets, strict=True)
+            if value >= 1.0
+        ]
+        if over and task.reduction.limits != "enforce":
+            return (
+                "no smooth motion comes nearer to the steps of what the profile asks for than "
+                f"{', '.join(over)}; smooth it, or allow more"
+            )
+        if over:
+            return (
+                "keeping the machine's limits alone costs more than the budgets allow: "
+                f"{', '.join(over)}; smooth the motion, allow more, or take --limits warn"
+            )
+        desired = sample_spline(fit, task.reference.t)
+        response = respond_on(task.chain, task.machine.gravity, desired)
+        broken = find_occupant_violations(task.machine, task.seat, response, desired, "desired")
+        return (
+            f"{'; '.join(str(violation) for violation in broken) or 'a budget is exceeded'}: no "
+            "motion within the budgets was found that keeps it"
+        )
