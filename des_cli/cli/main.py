@@ -104,14 +104,14 @@ def _discard_stdout() -> None:
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="""\b
 Example:
-  des-coriolis reduce cobra
+  des-coriolis reduce cobra_felt
 """,
 )
 @verbosity_options
 @color_option
 @click.version_option(__version__, prog_name=PROGRAM, message="%(prog)s %(version)s")
 def program() -> None:
-    """Reduce the Coriolis that a pilot feels in a three-axis human centrifuge.
+    """Reduce the Coriolis cross-coupling that a pilot feels in a three-axis human centrifuge.
 
     A maneuver profile goes in; a command table for the arm, the fork and the
     cab comes out, verified, with what it cost. Data goes to stdout, words to

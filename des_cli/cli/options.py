@@ -101,7 +101,7 @@ def text_or_json_option(text: str) -> Callable[[F], F]:
 # The options that are keys of `reduction:` by name. What a value may be is the
 # schema's business, but for the words that --help lists.
 _REDUCTION: tuple[tuple[str, Any, str], ...] = (
-    ("method", click.Choice(["minimum", "zero"]), "Least Coriolis, or none."),
+    ("method", click.Choice(["minimum", "zero"]), "Least cross-coupling, or none."),
     (
         "algorithm",
         click.Choice(["optimum", "report-sweep"]),
@@ -133,13 +133,13 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
     (
         "budget",
         "METRIC=MOST",
-        "The most Coriolis reduction for at most so much of a fidelity metric, inside the "
-        "machine's limits; a number alone is joint_deviation_relative.",
+        "The most reduction of the cross-coupling for at most so much of a fidelity metric, inside "
+        "the machine's limits; a number alone is joint_deviation_relative.",
     ),
     (
         "objective",
         click.Choice(["coriolis", "blend", "felt"]),
-        "Minimise the Coriolis, the Coriolis and a tenth of the felt error, or the felt error.",
+        "Minimise the cross-coupling, this and a tenth of the felt error, or the felt error.",
     ),
     (
         "ends",

@@ -26,7 +26,7 @@ from des_cli.job import STANDARD_STREAM, Job, TableFormat
 
 
 @click.command(
-    short_help="Reduce the Coriolis of profiles; write command tables.",
+    short_help="Reduce the cross-coupling of profiles; write command tables.",
     epilog="""\b
 Examples:
   des-coriolis reduce cobra
@@ -81,7 +81,7 @@ def reduce(
     no_plots: bool,
     **reduction: Any,
 ) -> ExitCode:
-    """Reduce the Coriolis of each PROFILE, and write what the machine is to do.
+    """Reduce the cross-coupling of each PROFILE, and write what the machine is to do.
 
     A PROFILE is a YAML or CSV file, the name of a built-in profile, or "-" for
     stdin. Each run is verified by independent code before its command table

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    short_help="Trade deviation for Coriolis: a curve of optima.",
+    short_help="Trade deviation for cross-coupling: a curve of optima.",
     epilog="""\b
 Examples:
   des-coriolis sweep cobra
@@ -112,7 +112,7 @@ def sweep(
     overwrite: bool,
     **reduction: Any,
 ) -> ExitCode:
-    """Show how much Coriolis each deviation from PROFILE buys.
+    """Show how much cross-coupling each deviation from PROFILE buys.
 
     Each point is an optimum: the most reduction for a budget, inside the limits,
     or the minimum for a weight r2. Beside them stand the study's single sweep and

@@ -125,7 +125,7 @@ def _rejected(source: str, failure: Failure) -> dict[str, Any]:
 def _line(facts: dict[str, Any]) -> str:
     kind = {"joints": "joint commands", "body_rates": "body rates"}[facts["kind"]]
     parts = [
-        f"{facts['method']} Coriolis by {facts['algorithm']}",
+        f"{facts['method']} cross-coupling by {facts['algorithm']}",
         facts["control"],
         f"{facts['axes']} axes",
         *([f"objective {facts['objective']}"] if facts["objective"] != "coriolis" else []),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -11,16 +12,17 @@ from des_cli.files.builtin import builtin_profiles
 from des_cli.files.load import load_profile
 from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond
-from des_cli.model.profile import BodyRates, JointCommands
+from des_cli.model.profile import BodyRates, JointCommands, Reduction
 
 NAMES = [profile.name for profile in builtin_profiles()]
-COBRAS = {"cobra", "cobra_table3"}
+COBRAS = {"cobra", "cobra_felt", "cobra_table3"}
 
 
 def test_the_shipped_maneuvers_are_these() -> None:
     assert {
-        "barrel_roll", "climbing_turn_rates", "cobra", "cobra_table3", "flight_log",
-        "gradual_onset", "post_stall_reversal", "rapid_onset", "rolling_spin", "slalom",
+        "barrel_roll", "climbing_turn_rates", "cobra", "cobra_felt", "cobra_table3",
+        "flight_log", "gradual_onset", "post_stall_reversal", "rapid_onset", "rolling_spin",
+        "slalom",
     } <= set(NAMES)  # fmt: skip
     assert sorted(NAMES) == NAMES
 
@@ -74,6 +76,16 @@ def test_every_kind_of_input_has_an_example() -> None:
     assert isinstance(load_profile("climbing_turn_rates").command, BodyRates)
     assert isinstance(load_profile("barrel_roll").command, BodyRates)
     assert "samples:" in (builtin_profiles()[NAMES.index("flight_log")]).path.read_text()
+
+
+def test_the_felt_cobra_is_the_studys_maneuver_with_what_a_silent_profile_gets() -> None:
+    felt, study = load_profile("cobra_felt"), load_profile("cobra")
+    for each in fields(Reduction):
+        ours, silent = (getattr(r, each.name) for r in (felt.reduction, Reduction()))
+        assert np.array_equal(ours, silent), each.name
+    motion, theirs = make_desired(felt).motion, make_desired(study).motion
+    for name in ("t", "angle", "rate_start", "rate_end"):
+        np.testing.assert_array_equal(getattr(motion, name), getattr(theirs, name))
 
 
 def test_the_gradual_onset_is_0_1_g_a_second_along_the_spine() -> None:
