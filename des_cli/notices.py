@@ -120,13 +120,11 @@ def _worse(metrics: dict[str, Any]) -> str:
     found = find_worse(metrics) if _usable(metrics) else []
     if not found:
         return ""
-    missing = [
-        key
-        for key in ("seat_rate_deviation_relative", "seat_angular_acceleration_rms_error_rad_s2")
-        if key not in (metrics["solver"].get("budget") or {})
-    ]
-    cure = f"a budget on {' or '.join(missing)} bounds that" if missing else "tighten the budgets"
-    return f"worse to sit in than the profile: {', '.join(map(str, found))}; {cure}"
+    cures = [each.cure for each in found if each.cure]
+    return (
+        f"worse to sit in than the profile: {', '.join(map(str, found))}; "
+        f"{', '.join(cures)} bound{'s' * (len(cures) == 1)} that"
+    )
 
 
 def _felt(metrics: dict[str, Any]) -> str:

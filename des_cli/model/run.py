@@ -73,6 +73,11 @@ class Violation:
             if self.from_s == self.to_s
             else f"from t = {self.from_s:g} to {self.to_s:g} s"
         )
+        if self.quantity == "rate step":
+            return (
+                f"{self.motion} {self.joint} rate steps by {self.peak:.4g} rad/s, "
+                f"which takes an infinite acceleration, {span}"
+            )
         return (
             f"{self.motion} {self.joint} {self.quantity} {self.peak:.4g} {unit} "
             f"{beyond} the {bound} {self.limit:g} {unit} {span}"

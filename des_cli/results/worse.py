@@ -53,11 +53,14 @@ class Worse:
         Its numbers, with their unit.
     paths : tuple of str
         Where the worse numbers stand in the metrics.
+    cure : str
+        What bounds it, as a part of a sentence.
     """
 
     label: str
     text: str
     paths: tuple[str, ...] = ()
+    cure: str = ""
 
     def __str__(self) -> str:
         return f"{self.label} {self.text}"
@@ -115,7 +118,11 @@ def _angular(metrics: Mapping[str, Any]) -> list[Worse]:
             texts.append(f"{numbers} rms" if kind == "rms" else f"peak {numbers}")
             paths.append(path)
     label = "total angular acceleration"
-    return [Worse(label, ", ".join(texts), tuple(paths))] if texts else []
+    kinds = [kind for kind in ("rms", "peak") if any(f".{kind}_" in path for path in paths)]
+    cure = "a budget on " + " and ".join(
+        f"seat_angular_acceleration_{kind}_ratio" for kind in kinds
+    )
+    return [Worse(label, ", ".join(texts), tuple(paths), cure)] if texts else []
 
 
 def _sideways(metrics: Mapping[str, Any]) -> list[Worse]:
@@ -123,7 +130,7 @@ def _sideways(metrics: Mapping[str, Any]) -> list[Worse]:
     before, after = number(metrics, "felt.seat_g.gy.peak_before_g"), number(metrics, path)
     if before is None or after is None or after - before <= LEAST_GY:
         return []
-    return [Worse("peak Gy", f"{before:.2g} -> {after:.2g} g", (path,))]
+    return [Worse("peak Gy", f"{before:.2g} -> {after:.2g} g", (path,), "the machine's gy_g")]
 
 
 def _onset(metrics: Mapping[str, Any]) -> list[Worse]:
@@ -139,7 +146,7 @@ def _onset(metrics: Mapping[str, Any]) -> list[Worse]:
         return []
     _, axis, text, _ = max(grown)
     paths = tuple(path for *_, path in grown)
-    return [Worse(f"{axis.capitalize()} onset", text, paths)]
+    return [Worse(f"{axis.capitalize()} onset", text, paths, "the machine's g_onset_g_s")]
 
 
 def _start(metrics: Mapping[str, Any]) -> list[Worse]:
@@ -153,4 +160,4 @@ def _start(metrics: Mapping[str, Any]) -> list[Worse]:
             off.append(f"{joint} {angle:+.2g} rad")
         if abs(rate) > LEAST_START_RATE:
             off.append(f"{joint} {rate:+.2g} rad/s")
-    return [Worse("start off by", ", ".join(off))] if off else []
+    return [Worse("start off by", ", ".join(off), cure="ends: match-start")] if off else []
