@@ -147,9 +147,10 @@ def test_a_finer_grid_starts_from_a_coarser_one(posed_cobra, table_1, jerk):
     budgets = [Budget(JOINTS, 0.05)]
     solution = spend_budgets(posed, budgets, Search(500))
     alone = minimise(_with_budgets(posed, budgets), _with_budgets(posed, budgets).desired)
-    # Rows of jerk divide rounding by the square of the step: 1e-9 is out of reach here.
+    # Rows of jerk divide rounding by the square of the step: the conditions are met to
+    # 1e-7 and not to 1e-9 here, and the costs agree accordingly, on any kernel.
     assert solution.usable if jerk else solution.converged
-    assert solution.cost == pytest.approx(alone.cost, rel=1e-9)
+    assert solution.cost == pytest.approx(alone.cost, rel=1e-7 if jerk else 1e-9)
 
 
 def test_jerk_limits_are_kept_and_used(posed_cobra, table_1):
