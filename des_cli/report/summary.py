@@ -82,7 +82,10 @@ def _changed(metrics: Mapping[str, Any]) -> str:
         return ""
     changed = change_words(metrics)
     if not changed:
-        return "The desired motion itself keeps the machine's limits."
+        return (
+            "What the profile asks for beyond the machine's limits is rounded by less than "
+            "anybody could notice."
+        )
     whole = percent(number(metrics, "executable.joint_change_relative"))
     return (
         "The machine cannot make the motion that the profile asks for: the nearest one inside "
@@ -115,9 +118,15 @@ def _study(metrics: Mapping[str, Any]) -> str:
     return f"By the study's measure: {percent(cost)} joint deviation ({percent(squared)} squared)."
 
 
+_STUDY = frozenset(each.key for each in COMPONENTS if each.axes == "report")
+
+
 def _moved(metrics: Mapping[str, Any]) -> str:
     grown = []
+    axes = lookup(metrics, "solver.axes")
     for key, name in _NAMES.items():
+        if axes == "seat" and key in _STUDY:
+            continue  # the pilot feels none of the study's components by itself
         reduction = number(metrics, f"coriolis.{key}.reduction")
         if reduction is not None and reduction < -_WORTH_A_WORD:
             grown.append(f"{name} by {percent(-reduction)}")

@@ -239,12 +239,12 @@ def test_the_budget_and_what_the_limits_changed_are_told(
     text = Page(render_report([run])).text
     assert "Spent of its budget: G error 0.131 of 0.1312 g." in text
     assert "budget G error ≤ 0.1312 g" in text
-    assert "The desired motion itself keeps the machine's limits." in text
+    assert "beyond the machine's limits is rounded by less than anybody could notice" in text
     set_at(run.metrics, "executable.joint_change_max_rad.cab", 0.0123)
     set_at(run.metrics, "executable.joint_change_relative", 0.0042)
     text = Page(render_report([run])).text
     assert "(cab by up to 0.0123 rad; 0.42 % of the joint angles)" in text
-    assert "itself keeps" not in text
+    assert "could notice" not in text
     assert "desired motion changed for the limits 0.42 %" in text
 
 
