@@ -20,7 +20,7 @@ from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
 from des_cli.model.motion import Motion, mean_of_sides
 from des_cli.model.run import Run
-from des_cli.results.joints import jerk_at_samples
+from des_cli.reduction.limits import jerk_at_samples
 from des_cli.units import split_unit
 
 TableFormat: TypeAlias = Literal["csv", "ndjson", "json", "parquet"]

@@ -95,11 +95,24 @@ def angle_magnitude(motion: Motion) -> Floats:
     return magnitude
 
 
+def jerk_at_samples(motion: Motion) -> Floats:
+    """Return the jerk at every sample, (n, 3) [rad/s^3].
+
+    The change of the acceleration from the interval before a sample to the one
+    after it, over the time between their middles. It is zero where the rate steps,
+    for there it would mean nothing; at the ends it is that of the next sample.
+    """
+    jerk = np.zeros_like(motion.angle)
+    if len(motion.t) > 2:
+        jerk[1:-1] = np.where(np.abs(motion.rate_step) > STEP_TOLERANCE, 0.0, motion.jerk)
+        jerk[0], jerk[-1] = jerk[1], jerk[-2]
+    return jerk
+
+
 def jerk_magnitude(motion: Motion) -> Floats:
-    """Return the jerk at each sample, (n, 3) [rad/s^3]; 0 at the ends and at a rate step."""
-    magnitude = np.zeros_like(motion.angle)
-    steps = np.abs(motion.rate_step) > STEP_TOLERANCE
-    magnitude[1:-1] = np.where(steps, 0.0, np.abs(motion.jerk))
+    """Return the jerk's magnitude at each sample, (n, 3) [rad/s^3]; 0 at the ends."""
+    magnitude = np.abs(jerk_at_samples(motion))
+    magnitude[[0, -1]] = 0.0
     return magnitude
 
 

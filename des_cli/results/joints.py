@@ -11,7 +11,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Machine
 from des_cli.model.motion import Motion
 from des_cli.model.run import Violation
-from des_cli.reduction.limits import STEP_TOLERANCE, measure_peaks
+from des_cli.reduction.limits import jerk_at_samples, measure_peaks
 
 AT_LIMIT = 0.99
 """Share of the acceleration limit from which a joint counts as being at it."""
@@ -61,20 +61,6 @@ def joint_metrics(
         }
         for j, joint in enumerate(JOINTS)
     }
-
-
-def jerk_at_samples(motion: Motion) -> Floats:
-    """Return the jerk at every sample, (n, 3) [rad/s^3].
-
-    The change of the acceleration from the interval before a sample to the one
-    after it, over the time between their middles. It is zero where the rate steps,
-    for there it would mean nothing; at the ends it is that of the next sample.
-    """
-    jerk = np.zeros_like(motion.angle)
-    if len(motion.t) > 2:
-        jerk[1:-1] = np.where(np.abs(motion.rate_step) > STEP_TOLERANCE, 0.0, motion.jerk)
-        jerk[0], jerk[-1] = jerk[1], jerk[-2]
-    return jerk
 
 
 def sign_changes(acceleration: Floats, least: Floats) -> list[int]:
