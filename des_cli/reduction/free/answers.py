@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,7 +12,7 @@ from des_cli.kinematics.coriolis import coriolis
 from des_cli.kinematics.response import respond_on
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
-from des_cli.model.metric import METRICS
+from des_cli.model.metric import METRICS, MetricKey
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.model.profile import Axes
 from des_cli.model.solution import Iteration, Solution, Status
@@ -161,6 +161,21 @@ class Answers:
         c = coriolis(chain, motion.angle_sides, motion.rate_sides, axes)
         running = np.sum((c @ self.task.reduction.r1) * c, axis=-1)
         return 0.5 * float(integrate_sides(motion.step, running))
+
+    def unkept(self, spent: Mapping[MetricKey, float], beyond: float) -> str:
+        """Say what the motion keeps and its table does not, which is straight between samples."""
+        over = [
+            f"{METRICS[metric].label} by {100.0 * (share - 1.0):.2g} %"
+            for metric, share in spent.items()
+            if share > 1.0
+        ]
+        if beyond > 0.0:
+            over.append(f"a bound on what the occupant gets by {100.0 * beyond:.2g} %")
+        return (
+            f"no table with a step of {self.task.reference.step.max():.3g} s was found within the "
+            f"budgets, the nearest exceeds {' and '.join(over) or 'them barely'}; "
+            "sample the profile finer, or allow more"
+        )
 
     def unreachable(self, program: MotionProgram, fit: ExecutableSpline) -> str:
         """Say which budgets the limits alone exceed, or which bounds."""

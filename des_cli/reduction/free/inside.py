@@ -64,19 +64,22 @@ def find_inside(
         return x
     plain = MotionProgram(replace(program.problem, cost=[], ground=None))
     for _ in range(ROUNDS):
-        before = _worst(values)
         over = np.maximum(values.budgets - 1.0 + BEYOND, 0.0)
         over[values.budgets < 1.0 - LITTLE_ROOM] = 0.0  # what is kept is kept
-        if _largest(values.local) >= 1.0 - LITTLE_ROOM:
+        if _worst(values) < -LITTLE_ROOM:
+            return x
+        at_points = _largest(values.local) >= 1.0 - LITTLE_ROOM
+        before = _excess(values, at_points)
+        if at_points:
             pulled = _Penalised(plain, over)
             x = minimise(pulled, x, replace(PULLED, stop_early=pulled.inside), on_step).x
-        elif before < -LITTLE_ROOM:
-            return x
         else:
             relaxed = _Relaxed(_nearest(program, over > 0.0), over)
             x = minimise(relaxed, x, replace(CENTRAL, stop_early=relaxed.inside), on_step).x
         values = program.values(x)
-        if _worst(values) < -ROOM or _worst(values) > before - PROGRESS * max(before, ROOM):
+        # each round is judged by what it lowers: the other may be the larger excess
+        after = _excess(values, at_points)
+        if _worst(values) < -ROOM or after > before - PROGRESS * max(before, ROOM):
             break
     return x if _worst(values) < -LITTLE_ROOM else None
 
@@ -87,7 +90,12 @@ def _largest(values: Floats) -> float:
 
 def _worst(values: Values) -> float:
     """Return the largest excess of a budget or bound over one."""
-    return max(_largest(values.budgets), _largest(values.local)) - 1.0
+    return max(_excess(values, at_points=True), _excess(values, at_points=False))
+
+
+def _excess(values: Values, at_points: bool) -> float:
+    """Return the largest excess over one of a bound at points, or of a budget."""
+    return _largest(values.local if at_points else values.budgets) - 1.0
 
 
 def _nearest(program: MotionProgram, exceeded: Flags) -> MotionProgram:

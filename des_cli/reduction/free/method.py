@@ -293,6 +293,7 @@ class _Search:
     ) -> FreeResult:
         """Adapt the budgets of the spline until its table spends what is allowed."""
         allowed = {b.metric: b.most for b in self.task.reduction.budget}
+        best: FreeResult | None = None
         for attempt in range(SETTLINGS):
             program = self._program(fit, budgets)
             modified, seat = self._table(program, fit, outcome.x)
@@ -307,6 +308,8 @@ class _Search:
             beyond = self._beyond(deviation, modified, seat)
             spends = worst >= LEFT or worst < BINDING or attempt >= GENEROUS
             kept = worst <= TOUCHING and not beyond
+            if kept or (best is None and outcome.status != "converged"):
+                best = self.answers.found(outcome, modified, desired, seat)
             if (kept and spends) or attempt == SETTLINGS - 1:
                 break
             if beyond:
@@ -325,7 +328,7 @@ class _Search:
             if inside is None:
                 break
             outcome = self._minimise(program, inside, rough=False, warm=self.warm)
-        return self.answers.found(outcome, modified, desired, seat)
+        return best or self.answers.refused(desired, self.answers.unkept(spent, beyond))
 
     def _beyond(self, deviation: Deviation, modified: Motion, seat: Seat) -> float:
         """Return by how much the table exceeds a bound on what the occupant gets, relative."""

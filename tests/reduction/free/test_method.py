@@ -15,6 +15,7 @@ from des_cli.model.motion import Motion
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free.method import LEFT, find_free_motion
 from des_cli.reduction.limits import find_occupant_violations, find_violations
+from tests.benchmarks.random_profiles import random_task
 from tests.support.free_motions import ATTITUDE, JOINTS, RATE, TURNING, G, smooth, task_of
 
 DESIRED = smooth(200)
@@ -251,6 +252,25 @@ def test_a_bound_that_the_desired_motion_exceeds_and_the_optimum_does_not():
     machine = replace(DES, occupant=occupant_of("gx", bound))
     solution = solved(task_of(DESIRED, WIDE, machine)).solution
     assert solution.cost == pytest.approx(unbounded.cost, rel=1e-3)
+
+
+def test_a_step_too_coarse_for_the_budgets_is_refused():
+    """The spline keeps this budget and its table, of 123 rows in 10 s, cannot."""
+    result = find_free_motion(random_task(794))
+    assert result.solution.status == "infeasible"
+    assert "step of 0.0854 s" in result.solution.message
+    assert "sample the profile finer" in result.solution.message
+
+
+def test_a_bound_at_points_and_a_budget_that_are_both_exceeded_at_the_start():
+    """The executable motion exceeds both, the budget by more."""
+    task = random_task(328)
+    solution = find_free_motion(task).solution
+    assert solution.status == "converged"
+    chain = chain_of(DES, Seat())
+    spent = Deviation.between(task.reference, solution.modified, (chain, chain), DES.gravity)
+    for budget in task.reduction.budget:
+        assert spent.value(budget.metric) <= budget.most
 
 
 def test_the_limit_on_steps():
