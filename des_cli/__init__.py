@@ -16,14 +16,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from des_cli.files.load import load_profile
     from des_cli.pipeline import reduce_profile
+    from des_cli.profiles_in.load import load_profile
 
 __version__ = "0.1.0"
 
 __all__ = ["__version__", "load_profile", "reduce_profile"]
 
-_HOME = {"load_profile": "des_cli.files.load", "reduce_profile": "des_cli.pipeline"}
+_HOME = {"load_profile": "des_cli.profiles_in.load", "reduce_profile": "des_cli.pipeline"}
 
 
 def __getattr__(name: str) -> Any:

@@ -95,7 +95,7 @@ def run_jobs(
 
 def load_job(job: Job) -> Profile:
     """Load the profile of a job with its overrides."""
-    from des_cli.files.load import load_profile
+    from des_cli.profiles_in.load import load_profile
 
     return load_profile(
         job.source, settings=job.settings, columns=dict(job.columns) or None, stdin=job.stdin
@@ -183,12 +183,12 @@ def _reduce_and_write(
 def _write(job: Job, run: Run, target: Path) -> bytes | None:
     """Write a run folder or a table; return the table that belongs on stdout."""
     if job.table_format is None:
-        from des_cli.files.run_folder import write_run
+        from des_cli.runs_out.run_folder import write_run
 
         write_run(run, target, plots=job.plots, overwrite=job.overwrite)
         return None
-    from des_cli.files.atomic import write_file
-    from des_cli.files.tables import command_columns, encode_table
+    from des_cli.runs_out.atomic import write_file
+    from des_cli.runs_out.tables import command_columns, encode_table
 
     table = encode_table(command_columns(run), job.table_format)
     if job.out == STANDARD_STREAM:
@@ -224,8 +224,8 @@ def _withdraw(job: Job, name: str) -> tuple[str, ...]:
     """
     if job.out == STANDARD_STREAM or (job.out_is_parent and not name):
         return ()
-    from des_cli.files.manifest import is_run
-    from des_cli.files.run_folder import discard_run
+    from des_cli.runs_out.manifest import is_run
+    from des_cli.runs_out.run_folder import discard_run
 
     target = job.destination(name)
     if job.table_format is not None and target.is_file():
@@ -238,8 +238,8 @@ def _withdraw(job: Job, name: str) -> tuple[str, ...]:
 
 
 def _holds_run_of(folder: Path, profile: Profile) -> bool:
-    from des_cli.files.manifest import is_run
-    from des_cli.files.run_folder import read_run
+    from des_cli.runs_out.manifest import is_run
+    from des_cli.runs_out.run_folder import read_run
 
     if not is_run(folder):
         return False

@@ -12,16 +12,16 @@ import pytest
 from ruamel.yaml import YAML
 
 from des_cli.errors import ExitCode
-from des_cli.files.expression import FUNCTIONS
-from des_cli.files.load import load_profile
-from des_cli.files.machine_schema import JointLimitsSection, MachineSection, OccupantSection
-from des_cli.files.machine_yaml import parse_machine
-from des_cli.files.tables import trajectory_names
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget, MetricKey
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Reduction
 from des_cli.pipeline import reduce_profile
+from des_cli.profiles_in.expression import FUNCTIONS
+from des_cli.profiles_in.load import load_profile
+from des_cli.profiles_in.machine_schema import JointLimitsSection, MachineSection, OccupantSection
+from des_cli.profiles_in.machine_yaml import parse_machine
+from des_cli.runs_out.tables import trajectory_names
 from des_cli.units import UNITS, split_unit, suffixes
 
 PAGE = Path(__file__).parents[1] / "docs" / "formats.md"

@@ -17,7 +17,7 @@ LAYERS = (
     ("reduction",),
     ("verify",),
     ("results", "metrics", "notices", "pipeline", "tradeoff"),
-    ("files", "plots", "report"),
+    ("profiles_in", "runs_out", "plots", "report"),
     ("failure", "job", "pool", "batch", "sweep"),
     ("cli", "__main__"),
 )

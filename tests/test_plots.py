@@ -13,7 +13,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from des_cli.files.tables import trajectory_columns
 from des_cli.model.arrays import Floats
 from des_cli.model.run import Run
 from des_cli.model.tradeoff import TradePoint
@@ -23,6 +22,7 @@ from des_cli.plots.ride import limits
 from des_cli.plots.thinning import thin
 from des_cli.plots.tradeoff import _figure
 from des_cli.plots.weighted import reduction_of, weighted_component
+from des_cli.runs_out.tables import trajectory_columns
 
 MakeRun = Callable[..., Run]
 

@@ -78,8 +78,8 @@ def _state(si: Mapping[tuple[str, str], float], choice: str, form: str) -> bytes
     import numpy as np
 
     from des_cli.cli.state_text import state_text
-    from des_cli.files.machine_file import load_machine
-    from des_cli.files.state_tables import encode_state
+    from des_cli.profiles_in.machine_file import load_machine
+    from des_cli.runs_out.state_tables import encode_state
     from des_cli.study.state import report_states
 
     machine = load_machine(choice, "--machine")
@@ -105,8 +105,8 @@ def _motion(
     """Return the kinematics of a profile's desired motion."""
     from des_cli.batch import load_job
     from des_cli.cli.state_text import motion_text
-    from des_cli.files.state_tables import encode_states
     from des_cli.kinematics.desired import make_desired
+    from des_cli.runs_out.state_tables import encode_states
     from des_cli.study.state import report_motion
 
     stdin = read_stdin((source,)) if source == STANDARD_STREAM else None

@@ -27,9 +27,9 @@ def machines(machine: str | None, form: str) -> None:
     What is printed of a machine reads back, from a file of its own or below
     "machine:" in a profile, to the same machine.
     """
-    from des_cli.files.machine_file import load_machine, machine_summary, machine_text
-    from des_cli.files.machine_yaml import machine_mapping
     from des_cli.model.machines import MACHINES
+    from des_cli.profiles_in.machine_file import load_machine, machine_summary, machine_text
+    from des_cli.profiles_in.machine_yaml import machine_mapping
 
     if machine is not None:
         shown = load_machine(machine, "NAME")

@@ -24,7 +24,7 @@ Examples:
 @verbosity_options
 def profiles(name: str | None, form: str) -> None:
     """List the built-in profiles, or print the file of the one called NAME."""
-    from des_cli.files.builtin import builtin_profiles
+    from des_cli.profiles_in.builtin import builtin_profiles
 
     known = {profile.name: profile for profile in builtin_profiles()}
     if name is not None:

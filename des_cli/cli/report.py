@@ -38,9 +38,9 @@ def report(console: Console, runs: tuple[str, ...], out: str) -> None:
     A RUN is a run folder, or a folder of run folders. The page needs no
     network and no other file.
     """
-    from des_cli.files.atomic import write_file
-    from des_cli.files.run_folder import StoredRun, read_run
     from des_cli.report.page import render_report
+    from des_cli.runs_out.atomic import write_file
+    from des_cli.runs_out.run_folder import StoredRun, read_run
 
     stored: list[StoredRun] = []
     problems: list[Problem] = []
@@ -68,7 +68,7 @@ def _run_folders(named: tuple[str, ...]) -> list[Path]:
     FileAccessError
         Naming every argument that is no run and holds none.
     """
-    from des_cli.files.manifest import is_run
+    from des_cli.runs_out.manifest import is_run
 
     folders: dict[Path, None] = {}
     problems = []

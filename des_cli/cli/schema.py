@@ -23,6 +23,6 @@ def schema() -> None:
     An editor that knows it completes the keys and marks mistakes while you
     type.
     """
-    from des_cli.files.schema import profile_json_schema
+    from des_cli.profiles_in.schema import profile_json_schema
 
     write_data(json.dumps(profile_json_schema(), indent=2, ensure_ascii=False) + "\n")

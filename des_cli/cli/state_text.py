@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from des_cli.model.machine import JOINTS, Machine, Seat
 
 if TYPE_CHECKING:
-    from des_cli.files.state_tables import Quantity
     from des_cli.model.arrays import Floats
+    from des_cli.runs_out.state_tables import Quantity
     from des_cli.study.state import StateReport
 
 WIDTH = 14
@@ -28,7 +28,7 @@ _OVERVIEW: tuple[tuple[str, int, str, str], ...] = (
 
 def state_text(report: StateReport, machine: Machine, seat: Seat) -> str:
     """Write everything that is known of the first state of a report."""
-    from des_cli.files.state_tables import QUANTITIES
+    from des_cli.runs_out.state_tables import QUANTITIES
 
     lines = [
         f"Machine {machine.name}, seat yaw {math.degrees(seat.yaw):.6g} deg, "

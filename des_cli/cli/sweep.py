@@ -197,8 +197,8 @@ def _run(
     about = f"{profile.name}, {_objective(profile)}"
     _write(points, about, out, form, overwrite)
     if plot is not None:
-        from des_cli.files.atomic import write_file
         from des_cli.plots import draw_tradeoff
+        from des_cli.runs_out.atomic import write_file
 
         write_file(plot, draw_tradeoff(points, about), overwrite=overwrite)
     return exit_code_of(results)
@@ -231,8 +231,8 @@ def _write(
 
         write_data(points_text(points, about))
         return
-    from des_cli.files.atomic import write_file
-    from des_cli.files.point_table import encode_points
+    from des_cli.runs_out.atomic import write_file
+    from des_cli.runs_out.point_table import encode_points
 
     table = encode_points(points, cast(TableFormat, form))
     if out in (None, STANDARD_STREAM):

@@ -43,8 +43,8 @@ def read_swept_budgets(
 
 
 def _require_metric(metric: str) -> None:
-    from des_cli.files.wording import did_you_mean, one_of
     from des_cli.model.metric import METRICS
+    from des_cli.profiles_in.wording import did_you_mean, one_of
 
     if metric not in METRICS:
         hint = did_you_mean(metric, METRICS)

@@ -85,9 +85,9 @@ def validate(
 
 def understood(source: str, profile: Profile) -> dict[str, Any]:
     """Return what a profile was taken for."""
-    from des_cli.files.machine_yaml import occupant_mapping
     from des_cli.model.machine import JOINTS
     from des_cli.model.profile import JointCommands
+    from des_cli.profiles_in.machine_yaml import occupant_mapping
 
     reduction, machine = profile.reduction, profile.machine
     return {

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, get_args
 
-from des_cli.files.run_folder import StoredRun
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
 from des_cli.plots.standing import status_words
@@ -15,6 +14,7 @@ from des_cli.results.budgets import spent_budgets
 from des_cli.results.ends import When, end_words
 from des_cli.results.reading import lookup, number
 from des_cli.results.worse import worse_paths
+from des_cli.runs_out.run_folder import StoredRun
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from des_cli.files.run_folder import StoredRun
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
 from des_cli.plots import CAPTIONS, draw_plots
@@ -27,6 +26,7 @@ from des_cli.report.summary import summary_sentences
 from des_cli.report.tiles import Tile, felt_tiles
 from des_cli.results.reading import lookup, number
 from des_cli.results.worse import worse_paths
+from des_cli.runs_out.run_folder import StoredRun
 
 # Rounding of the solver's last step is no violation.
 _ROUNDING = 1e-9

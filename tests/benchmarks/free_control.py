@@ -31,7 +31,6 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
 from des_cli import load_profile
-from des_cli.files.builtin import builtin_profile
 from des_cli.kinematics.desired import make_desired
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
@@ -39,6 +38,7 @@ from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Reduction
+from des_cli.profiles_in.builtin import builtin_profile
 from des_cli.reduction.executable import fit_executable
 from des_cli.reduction.free.inside import find_inside
 from des_cli.reduction.free.limit_rows import LimitRows

@@ -19,10 +19,10 @@ import pytest
 from des_cli.cli import kinematics as module
 from des_cli.cli.kinematics import kinematics
 from des_cli.cli.state_options import QUANTITIES
-from des_cli.files.load import load_profile
-from des_cli.files.state_tables import state_columns
 from des_cli.kinematics.desired import make_desired
 from des_cli.model.machine import JOINTS
+from des_cli.profiles_in.load import load_profile
+from des_cli.runs_out.state_tables import state_columns
 from des_cli.study.state import report_motion
 from des_cli.units import FOOT_M, UNITS, suffixes
 

@@ -8,9 +8,9 @@ from textwrap import indent
 
 import pytest
 
-from des_cli.files.load import load_profile
-from des_cli.files.machine_yaml import machine_mapping, parse_machine
 from des_cli.model.machines import MACHINES
+from des_cli.profiles_in.load import load_profile
+from des_cli.profiles_in.machine_yaml import machine_mapping, parse_machine
 
 
 def test_the_list_has_a_line_for_each(invoke) -> None:

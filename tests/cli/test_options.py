@@ -8,9 +8,9 @@ import pytest
 
 from des_cli.cli.options import _REDUCTION, TABLE_FORMATS, reduction_settings
 from des_cli.cli.reduce import reduce
-from des_cli.files import tables
 from des_cli.job import TableFormat
 from des_cli.model import profile
+from des_cli.runs_out import tables
 
 
 def test_table_formats_are_those_that_can_be_written() -> None:

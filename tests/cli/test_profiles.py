@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from des_cli.files.builtin import builtin_profiles
+from des_cli.profiles_in.builtin import builtin_profiles
 
 
 def test_the_list_has_a_line_for_each(invoke) -> None:

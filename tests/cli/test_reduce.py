@@ -9,8 +9,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from des_cli.files.load import load_profile
 from des_cli.kinematics.desired import make_desired
+from des_cli.profiles_in.load import load_profile
 from des_cli.reduction.limits import find_violations
 
 RUN_FILES = {"commands.csv", "trajectory.parquet", "metrics.json", "manifest.json"}

@@ -20,12 +20,12 @@ from des_cli.cli import sweep as module
 from des_cli.cli.tradeoff_text import point_line, points_text
 from des_cli.errors import ExitCode
 from des_cli.failure import Failure
-from des_cli.files.load import load_profile
-from des_cli.files.point_table import COLUMNS
 from des_cli.job import Job
 from des_cli.kinematics.desired import make_desired
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.model.tradeoff import TradePoint
+from des_cli.profiles_in.load import load_profile
+from des_cli.runs_out.point_table import COLUMNS
 from des_cli.sweep import PointJob, PointResult, exit_code_of, run_point
 from des_cli.tradeoff import CONSTANT_FACTORS, doubts
 

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from des_cli.files.load import load_profile
 from des_cli.kinematics.chain import seat_rotation
 from des_cli.kinematics.coriolis import coriolis
 from des_cli.kinematics.desired import make_desired
@@ -11,6 +10,7 @@ from des_cli.kinematics.seat import pilot_g
 from des_cli.model.machine import Machine, Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion, integrate_sides
+from des_cli.profiles_in.load import load_profile
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
 

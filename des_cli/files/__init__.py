@@ -1,1 +1,0 @@
-"""Everything that touches a file: profiles in, tables and run folders out."""

@@ -1,0 +1,1 @@
+"""Profiles and machines, read from files and checked: all that is wrong, at once."""

@@ -1,0 +1,328 @@
+"""A machine described in YAML: read, and shown so that it reads back."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pydantic import ValidationError
+
+from des_cli.model.machine import (
+    ASSUMED_JERK_PER_ACCELERATION,
+    JOINTS,
+    UNBOUNDED,
+    DHRow,
+    JointLimits,
+    Machine,
+    OccupantBounds,
+)
+from des_cli.model.machines import MACHINES, gimballed_centrifuge_rows
+from des_cli.profiles_in.findings import Findings
+from des_cli.profiles_in.machine_schema import (
+    JointLimitsSection,
+    MachineSection,
+    split_angle,
+    split_signed_length,
+)
+from des_cli.profiles_in.wording import did_you_mean, one_of, plain
+from des_cli.profiles_in.yaml_nodes import Step, parse_yaml
+from des_cli.units import STANDARD_GRAVITY_M_S2
+
+_CHAIN_LENGTHS = ("L2", "Lx", "Ly", "Lz", "Lt")
+_G_COMPONENTS = ("gx", "gy", "gz")
+
+
+def parse_machine(text: str, label: str) -> Machine:
+    """Read a machine from the text of a YAML file.
+
+    Parameters
+    ----------
+    text : str
+    label : str
+        What messages call the file.
+
+    Raises
+    ------
+    ProfileError
+        With everything that is wrong.
+    """
+    findings = Findings(parse_yaml(text, label))
+    try:
+        section = MachineSection.model_validate(findings.root.plain())
+    except ValidationError as error:
+        findings.add_validation(error)
+        findings.raise_if_any()
+        raise
+    machine = build_machine(section, (), findings)
+    findings.raise_if_any()
+    assert machine is not None
+    return machine
+
+
+def is_machine_file(choice: str) -> bool:
+    """Tell a file's path from the name of a built-in machine."""
+    return choice.endswith((".yaml", ".yml")) or "/" in choice or "\\" in choice
+
+
+def named_machine(name: str, path: Sequence[Step], findings: Findings) -> Machine | None:
+    """Return a built-in machine, or None after saying that there is none."""
+    machine = MACHINES.get(name)
+    if machine is None:
+        hint = did_you_mean(name, MACHINES) or f"; there is {one_of(sorted(MACHINES))}"
+        what = f"there is no built-in machine {plain(name)}{hint}, or give a file's path"
+        findings.add(path, what)
+    return machine
+
+
+def build_machine(section: Any, path: Sequence[Step], findings: Findings) -> Machine | None:
+    """Make the machine that a valid section describes.
+
+    Parameters
+    ----------
+    section : MachineSection
+    path : sequence of str or int
+        Where it stands in the document.
+    findings : Findings
+        Takes what is wrong.
+
+    Returns
+    -------
+    Machine or None
+        None after saying what is wrong.
+    """
+    known = len(findings.problems)
+    base = None
+    if section.base is not None:
+        base = named_machine(section.base, [*path, "base"], findings)
+    has_base = section.base is not None
+    lengths = dict(base.lengths) if base else {}
+    given = section.given("lengths")
+    if given:
+        lengths |= {name: value * given[1].to_si for name, value in given[0].items()}
+    limits = _limits(section, base, has_base, path, findings)
+    rows = _rows(section, base, has_base, lengths, path, findings)
+    gravity = section.si("gravity", base.gravity if base else STANDARD_GRAVITY_M_S2)
+    if len(findings.problems) > known or rows is None:
+        return None
+    default_name = f"{base.name} (changed)" if base else "own machine"
+    return Machine(
+        name=section.name or default_name,
+        rows=rows,
+        limits=(limits[0], limits[1], limits[2]),
+        gravity=gravity,
+        lengths=lengths,
+        source=section.source or (base.source if base else ""),
+        occupant=_occupant(section.occupant, base.occupant if base else OccupantBounds()),
+    )
+
+
+def _limits(
+    section: Any, base: Machine | None, has_base: bool, path: Sequence[Step], findings: Findings
+) -> list[JointLimits]:
+    found = []
+    for index, joint in enumerate(JOINTS):
+        own = getattr(section.limits, joint) if section.limits else None
+        limits = base.limits[index] if base else JointLimits(math.inf, math.nan, math.nan)
+        missing = [] if has_base else ["angle", "rate", "acceleration"]
+        if own is not None:
+            changes = {
+                measure.stem: own.si(measure.stem)
+                for measure in own.measures
+                if own.given(measure.stem)
+            }
+            for key in ("angle", "jerk"):
+                if getattr(own, key) is not None:
+                    changes[key] = math.inf
+            missing = [name for name in missing if name not in changes]
+            if not has_base:
+                changes.setdefault(
+                    "jerk", ASSUMED_JERK_PER_ACCELERATION * changes.get("acceleration", math.nan)
+                )
+            limits = replace(limits, **changes)
+        where = [*path, "limits", joint]
+        for name in missing:
+            keys = next(m.keys for m in JointLimitsSection.measures if m.stem == name)
+            findings.add(where, f"the {joint}'s {name} limit is missing: give {one_of(keys)}")
+        found.append(limits)
+    return found
+
+
+def _occupant(section: Any, base: OccupantBounds) -> OccupantBounds:
+    """Return what the occupant may get: what the section says, the rest as the base has it."""
+    if section is None:
+        return base
+    changes: dict[str, Any] = {}
+    for name in _G_COMPONENTS:
+        given = getattr(section, f"{name}_g")
+        if given is not None:
+            changes[name] = tuple(
+                open_end if end is None else end
+                for end, open_end in zip(given, UNBOUNDED, strict=True)
+            )
+    if section.g_onset_g_s is not None:
+        changes["g_onset"] = section.g_onset_g_s
+    if section.given("seat_angular_acceleration"):
+        changes["angular_acceleration"] = section.si("seat_angular_acceleration")
+    return replace(base, **changes)
+
+
+def _rows(
+    section: Any,
+    base: Machine | None,
+    has_base: bool,
+    lengths: Mapping[str, float],
+    path: Sequence[Step],
+    findings: Findings,
+) -> tuple[DHRow, ...] | None:
+    if section.rows is not None:
+        if section.fork_axis is not None:
+            findings.add([*path, "fork_axis"], "says nothing beside rows: leave one of them out")
+        return _own_rows(section.rows, lengths, [*path, "rows"], findings)
+    if base and section.given("lengths") is None and section.fork_axis is None:
+        return base.rows
+    if has_base and base is None:
+        return None
+    given = section.given_key("lengths")
+    missing = [name for name in _CHAIN_LENGTHS if name not in lengths]
+    if missing:
+        findings.add(
+            [*path, given] if given else path,
+            f"the length{'s' * (len(missing) > 1)} {', '.join(missing)} must be given "
+            "(or rows, or base: des)",
+        )
+        return None
+    for name in section.given("lengths")[0] if given else ():
+        if name not in (*_CHAIN_LENGTHS, "L1"):
+            hint = did_you_mean(name, _CHAIN_LENGTHS) or f"; there are {', '.join(_CHAIN_LENGTHS)}"
+            findings.add([*path, str(given), name], f"is not a length of the chain{hint}")
+    axis: Any = section.fork_axis or (_fork_axis(base) if base else "radial")
+    if axis is None:
+        findings.add([*path, "base"], "its chain is not one of named lengths: give rows")
+        return None
+    return gimballed_centrifuge_rows(lengths, fork_axis=axis)
+
+
+def _fork_axis(base: Machine) -> Any:
+    """Tell which chain of named lengths a machine has, or None."""
+    if any(name not in base.lengths for name in _CHAIN_LENGTHS):
+        return None
+    for axis in ("radial", "tangential"):
+        if base.rows == gimballed_centrifuge_rows(base.lengths, fork_axis=axis):
+            return axis
+    return None
+
+
+def _own_rows(
+    rows: Sequence[Any], lengths: Mapping[str, float], path: Sequence[Step], findings: Findings
+) -> tuple[DHRow, ...]:
+    made = []
+    for index, row in enumerate(rows):
+        where = [*path, index]
+        variable, sign, offset = None, 1, row.si("theta")
+        if row.theta is not None:
+            variable, sign, offset = split_angle(row.theta)
+        made.append(
+            DHRow(
+                alpha=row.si("alpha"),
+                a=_length(row, "a", lengths, where, findings),
+                d=_length(row, "d", lengths, where, findings),
+                offset=offset,
+                variable=variable,
+                sign=sign,
+            )
+        )
+    _check_chain(made, path, findings)
+    return tuple(made)
+
+
+def _length(
+    row: Any, key: str, lengths: Mapping[str, float], path: Sequence[Step], findings: Findings
+) -> float:
+    named = getattr(row, key)
+    if named is None:
+        return float(row.si(key))
+    sign, name = split_signed_length(named)
+    if name not in lengths:
+        hint = did_you_mean(name, lengths)
+        findings.add([*path, key], f"the length {name} is not among the lengths given{hint}")
+        return 0.0
+    return sign * lengths[name]
+
+
+def _check_chain(rows: Sequence[DHRow], path: Sequence[Step], findings: Findings) -> None:
+    """Say where the joints are not arm, fork and cab, once each and in this order."""
+    joints = [row.variable for row in rows if row.variable in JOINTS]
+    for joint in JOINTS:
+        count = joints.count(joint)
+        if count != 1:
+            times = "in no row" if count == 0 else f"in {count} rows"
+            findings.add(path, f"the {joint} turns {times}; it must turn exactly one")
+    if sorted(map(str, joints)) == sorted(JOINTS) and tuple(joints) != JOINTS:
+        findings.add(
+            path,
+            f"the joints stand in the order {', '.join(map(str, joints))}; "
+            "from the ground outward they are arm, fork, cab",
+        )
+    last_joint = max((i for i, row in enumerate(rows) if row.variable in JOINTS), default=-1)
+    for index, row in enumerate(rows):
+        if row.variable and row.variable not in JOINTS and index < last_joint:
+            findings.add(
+                [*path, index], f"{row.variable} turns before the cab; the seat sits in the cab"
+            )
+
+
+def machine_mapping(machine: Machine) -> dict[str, Any]:
+    """Return a machine as the mapping that ``machine:`` reads back.
+
+    Lengths are in metres and angles in radians, so that the doubles are the
+    same afterwards.
+    """
+    limits = {}
+    for joint, bound in zip(JOINTS, machine.limits, strict=True):
+        endless = math.isinf(bound.angle)
+        limits[joint] = {
+            **({"angle": "endless"} if endless else {"angle_rad": bound.angle}),
+            "rate_rad_s": bound.rate,
+            "acceleration_rad_s2": bound.acceleration,
+            **({"jerk": "unlimited"} if math.isinf(bound.jerk) else {"jerk_rad_s3": bound.jerk}),
+        }
+    shown: dict[str, Any] = {"name": machine.name}
+    if machine.source:
+        shown["source"] = machine.source
+    if machine.lengths:
+        shown["lengths_m"] = dict(machine.lengths)
+    shown["limits"] = limits
+    if machine.occupant.bounded:
+        shown["occupant"] = occupant_mapping(machine.occupant)
+    shown["gravity_m_s2"] = machine.gravity
+    shown["rows"] = [_row_mapping(row) for row in machine.rows]
+    return shown
+
+
+def occupant_mapping(occupant: OccupantBounds) -> dict[str, Any]:
+    """Return bounds for the occupant as the mapping that ``occupant:`` reads back."""
+    shown: dict[str, Any] = {}
+    for name in _G_COMPONENTS:
+        ends = getattr(occupant, name)
+        if ends != UNBOUNDED:
+            shown[f"{name}_g"] = [None if math.isinf(end) else end for end in ends]
+    if not math.isinf(occupant.g_onset):
+        shown["g_onset_g_s"] = occupant.g_onset
+    if not math.isinf(occupant.angular_acceleration):
+        shown["seat_angular_acceleration_rad_s2"] = occupant.angular_acceleration
+    return shown
+
+
+def _row_mapping(row: DHRow) -> dict[str, Any]:
+    shown: dict[str, Any] = {
+        key: value
+        for key, value in (("alpha_rad", row.alpha), ("a_m", row.a), ("d_m", row.d))
+        if value
+    }
+    if row.variable is None:
+        return shown | ({"theta_rad": row.offset} if row.offset else {})
+    sign = "-" if row.sign < 0 else ""
+    offset = f" {'-' if row.offset < 0 else '+'} {abs(row.offset)!r}" if row.offset else ""
+    return shown | {"theta": f"{sign}{row.variable}{offset}"}

@@ -1,0 +1,246 @@
+"""A YAML profile, made into the model's ``Profile``."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from pydantic import ValidationError
+
+from des_cli.errors import DesError, ProfileError
+from des_cli.model.arrays import Floats
+from des_cli.model.machine import JOINTS, Machine, Seat
+from des_cli.model.profile import BodyRates, JointCommands, Profile
+from des_cli.profiles_in.commands import check_commands, read_commands, read_time
+from des_cli.profiles_in.findings import Findings
+from des_cli.profiles_in.machine_yaml import (
+    build_machine,
+    is_machine_file,
+    named_machine,
+    parse_machine,
+)
+from des_cli.profiles_in.overrides import LABEL, apply_settings
+from des_cli.profiles_in.profile_csv import parse_samples
+from des_cli.profiles_in.reduction_section import read_reduction
+from des_cli.profiles_in.schema import BodyRates as BodyRatesSection
+from des_cli.profiles_in.schema import Joints as JointsSection
+from des_cli.profiles_in.schema import ProfileDocument, ProfileSettings
+from des_cli.profiles_in.sections import Section
+from des_cli.profiles_in.source import decode, label_of, read_source
+from des_cli.profiles_in.wording import one_of
+from des_cli.profiles_in.yaml_nodes import Node, parse_yaml
+
+_COMMANDS = ("joints", "body_rates", "samples")
+_AnySection = TypeVar("_AnySection", bound=Section)
+Commands = tuple[Floats, JointCommands | BodyRates]
+
+
+@dataclass
+class Reading:
+    """One profile while it is read.
+
+    Parameters
+    ----------
+    label : str
+        What messages call the file.
+    folder : Path
+        Where files stand that the profile refers to.
+    digest : hashlib hash
+        Takes the bytes of the profile and of every file that it refers to.
+    """
+
+    label: str
+    folder: Path
+    digest: Any
+
+    def referred(self, name: str, place: str) -> tuple[str, str]:
+        """Return label and text of a file that the profile refers to.
+
+        Parameters
+        ----------
+        name : str
+        place : str
+            Where it is named: a path in a profile starts at the profile's
+            folder, one of a ``--set`` at the current folder.
+        """
+        path = Path(name) if place.startswith(LABEL) else self.folder / name
+        label = label_of(path)
+        data = read_source(path, label)
+        self.digest.update(hashlib.sha256(data).digest())
+        return label, decode(data, label)
+
+
+def parse_profile(text: str, reading: Reading, name: str, settings: Sequence[str]) -> Profile:
+    """Read a YAML profile.
+
+    Parameters
+    ----------
+    text : str
+    reading : Reading
+    name : str
+        Used where the profile has none.
+    settings : sequence of str
+        ``--set`` strings.
+
+    Raises
+    ------
+    ProfileError
+        With everything that is wrong with it.
+    FileAccessError
+        If a file that it refers to cannot be read and nothing else is wrong.
+    """
+    root = parse_yaml(text, reading.label)
+    findings = Findings(root)
+    if not isinstance(root.value, dict):
+        findings.add((), "is not a profile: a profile is a mapping that starts with format:")
+        findings.raise_if_any()
+    findings.problems += apply_settings(root, settings)
+    document = validated(ProfileDocument, findings)
+    return finish(document, document_commands, reading, name, findings)
+
+
+def parse_settings(settings: Sequence[str], label: str) -> tuple[ProfileSettings, Findings]:
+    """Read the settings of a profile that has only samples of its own.
+
+    Returns
+    -------
+    ProfileSettings, Findings
+        What the settings say, and what is wrong with them.
+    """
+    root = Node(label, {})
+    findings = Findings(root)
+    findings.problems += apply_settings(root, settings)
+    return validated(ProfileSettings, findings), findings
+
+
+def validated(model: type[_AnySection], findings: Findings) -> _AnySection:
+    """Return the sections of a document that are right, and say what is wrong.
+
+    Members that fail are left out, so that the rest can be checked further.
+    """
+    data = findings.root.plain()
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        failed = findings.add_validation(error)
+    rest = {key: value for key, value in data.items() if key not in failed}
+    rest = {key: value for key, value in rest.items() if key in model.model_fields}
+    required = {"format": "des-coriolis/1"} if "format" in model.model_fields else {}
+    return model.model_validate(required | rest)
+
+
+def finish(
+    document: ProfileSettings,
+    commands_of: Callable[[Any, Reading, Findings], Commands | None],
+    reading: Reading,
+    name: str,
+    findings: Findings,
+) -> Profile:
+    """Put a profile together from its sections, or raise with all that is wrong."""
+    machine: Machine | None = None
+    unread: DesError | None = None
+    commands: Commands | None = None
+    try:
+        machine = read_machine(document, reading, findings)
+    except DesError as error:
+        unread = error
+    try:
+        commands = commands_of(document, reading, findings)
+    except DesError as error:
+        unread = error if unread is None else ProfileError([*unread.problems, *error.problems])
+    reduction = read_reduction(document.reduction, findings)
+    initial = read_initial(document.initial, commands, findings)
+    if unread is not None and findings.problems:
+        findings.problems += unread.problems
+    findings.raise_if_any()
+    if unread is not None:
+        raise unread
+    assert machine is not None, "otherwise something was found"
+    assert commands is not None, "otherwise something was found"
+    return Profile(
+        name=document.name or name,
+        t=commands[0],
+        command=commands[1],
+        machine=machine,
+        seat=read_seat(document.seat),
+        initial_angle=initial,
+        reduction=reduction,
+        sha256=reading.digest.hexdigest(),
+    )
+
+
+def read_machine(document: ProfileSettings, reading: Reading, findings: Findings) -> Machine | None:
+    """Return the machine: built-in, from a file, or described in the profile."""
+    choice: Any = document.machine
+    if not isinstance(choice, str):
+        return build_machine(choice, ("machine",), findings)
+    if is_machine_file(choice):
+        label, text = reading.referred(choice, findings.root.place_of(["machine"]))
+        return parse_machine(text, label)
+    return named_machine(choice, ("machine",), findings)
+
+
+def read_seat(section: Any) -> Seat:
+    """Return how the seat is fixed; the model's default where nothing is said."""
+    default = Seat()
+    if section is None:
+        return default
+    return Seat(yaw=section.si("yaw", default.yaw), pitch=section.si("pitch", default.pitch))
+
+
+def read_initial(section: Any, commands: Commands | None, findings: Findings) -> Floats:
+    """Return the joint angles at the first sample, (3,) [rad]."""
+    given = [section.si(joint) if section is not None else 0.0 for joint in JOINTS]
+    if commands is not None and isinstance(commands[1], JointCommands):
+        for joint in JOINTS[1:]:
+            key = section.given_key(joint) if section is not None else None
+            if key:
+                words = f"the {joint} starts where its position command does; leave this out"
+                findings.add(["initial", key], words, of_key=True)
+        given[1:] = commands[1].position[0].tolist()
+    return np.array(given)
+
+
+def document_commands(
+    document: ProfileDocument, reading: Reading, findings: Findings
+) -> Commands | None:
+    """Return times and commands of a YAML profile, or None after saying what is wrong."""
+    present = findings.root.value
+    assert isinstance(present, dict)
+    # A section that was left out, or that the schema refused, is None.
+    sections: dict[str, Any] = {name: getattr(document, name) for name in (*_COMMANDS, "time")}
+    given = [name for name in _COMMANDS if name in present]
+    if not given:
+        findings.add((), f"has no commands: give {one_of(_COMMANDS)}")
+    for name in given[1:]:
+        findings.add([name], f"stands beside {given[0]}: keep one of them", of_key=True)
+    if given[:1] == ["samples"]:
+        if "time" in present:
+            findings.add(["time"], "the times come from the samples: leave this out", of_key=True)
+        return (
+            None
+            if sections["samples"] is None
+            else _sampled(sections["samples"], reading, findings)
+        )
+    if "time" not in present:
+        findings.add((), "time is missing: give time: {start_s: …, stop_s: …, step_s: …}")
+    time = None if sections["time"] is None else read_time(sections["time"], findings)
+    if time is None or len(given) != 1:
+        return None
+    section, name = sections[given[0]], given[0]
+    if section is not None:
+        return read_commands(section, name, time, findings)
+    refused = present[name].plain()
+    if isinstance(refused, dict):
+        measures = (JointsSection if name == "joints" else BodyRatesSection).measures
+        check_commands(measures, refused, name, time, findings)
+    return None
+
+
+def _sampled(section: Any, reading: Reading, findings: Findings) -> Commands:
+    label, text = reading.referred(section.file, findings.root.place_of(["samples", "file"]))
+    return parse_samples(text, label, section.columns)

@@ -1,0 +1,1 @@
+"""What a run leaves behind: tables and run folders, built aside and then named."""

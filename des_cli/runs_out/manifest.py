@@ -1,0 +1,151 @@
+"""The manifest of a run, and JSON whose bytes do not vary."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import numpy as np
+
+from des_cli import __version__
+from des_cli.errors import FileAccessError, Problem
+from des_cli.model.profile import Profile
+from des_cli.runs_out import atomic
+
+RUN_FORMAT = "des-coriolis/run/1"
+MANIFEST = "manifest.json"
+
+_SHA256 = re.compile(r"[0-9a-f]{64}")
+
+
+def encode_json(content: Mapping[str, Any]) -> bytes:
+    """Return JSON in the bytes that the same content always has.
+
+    Keys keep their order, numbers their shortest exact form; a number that is
+    not finite, which JSON does not know, becomes ``null``.
+    """
+    return (json.dumps(_plain(content), indent=2, allow_nan=False) + "\n").encode()
+
+
+def encode_manifest(profile: Profile, outputs: Mapping[str, bytes]) -> bytes:
+    """Return the manifest of the outputs of a profile.
+
+    Parameters
+    ----------
+    profile : Profile
+    outputs : mapping of str to bytes
+        File names, as seen from the folder, and what is in the files.
+    """
+    return encode_json(
+        {
+            "format": RUN_FORMAT,
+            "tool": {"name": "des-coriolis", "version": __version__},
+            "profile": {"name": profile.name, "sha256": profile.sha256},
+            "files": [
+                {"name": name, "size": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+                for name, data in outputs.items()
+            ],
+        }
+    )
+
+
+def is_run(folder: str | os.PathLike[str]) -> bool:
+    """Tell whether a folder holds a run: whether a manifest of a run is there.
+
+    A folder in which a killed process was still building one does not.
+    """
+    if atomic.is_temporary(Path(folder).name):
+        return False
+    try:
+        read_manifest(folder)
+    except FileAccessError:
+        return False
+    return True
+
+
+def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return the manifest of a run, its form checked but not yet its files.
+
+    Raises
+    ------
+    FileAccessError
+        If there is none, or it is not one of this format; with all problems.
+    """
+    path = Path(folder) / MANIFEST
+    with atomic.plain_words(path, "cannot be read"):
+        if not path.exists():
+            raise FileAccessError([Problem(str(folder), f"is not a run: it has no {MANIFEST}")])
+    manifest = parse_object(path, read_bytes(path))
+    problems = [Problem(str(path), what) for what in _malformed(manifest)]
+    if problems:
+        raise FileAccessError(problems)
+    return manifest
+
+
+def read_bytes(path: Path) -> bytes:
+    """Return the bytes of a file, or raise FileAccessError."""
+    with atomic.plain_words(path, "cannot be read"):
+        return path.read_bytes()
+
+
+def parse_object(path: Path, data: bytes) -> dict[str, Any]:
+    """Return the JSON object in the bytes of a file, or raise FileAccessError."""
+    try:
+        content = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise FileAccessError([Problem(str(path), f"is not JSON: {error}")]) from error
+    if not isinstance(content, dict):
+        raise FileAccessError([Problem(str(path), "is not a JSON object")])
+    return content
+
+
+def _malformed(manifest: Mapping[str, Any]) -> list[str]:
+    """Return what is wrong with the form of a manifest, a sentence each."""
+    if manifest.get("format") != RUN_FORMAT:
+        return [f"is not the manifest of a run: its format is not {RUN_FORMAT}"]
+    wrong = []
+    profile = manifest.get("profile")
+    if not isinstance(profile, dict) or not isinstance(profile.get("name"), str):
+        wrong.append("profile.name is missing")
+    files = manifest.get("files")
+    if not isinstance(files, list):
+        return [*wrong, "files is missing"]
+    for i, entry in enumerate(files):
+        if not (
+            isinstance(entry, dict)
+            and _inside(entry.get("name"))
+            and type(entry.get("size")) is int
+            and isinstance(entry.get("sha256"), str)
+            and _SHA256.fullmatch(entry["sha256"])
+        ):
+            wrong.append(f"files[{i}] is not an entry with name, size and sha256 inside the folder")
+    return wrong
+
+
+def _inside(name: object) -> bool:
+    """Tell whether a name in a manifest stays inside the folder."""
+    if not isinstance(name, str) or not name or "\0" in name or "\\" in name:
+        return False
+    path = PurePosixPath(name)
+    return not path.is_absolute() and ".." not in path.parts and path.name != MANIFEST
+
+
+def _plain(value: Any) -> Any:
+    """Turn numpy's scalars and arrays into what JSON knows."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

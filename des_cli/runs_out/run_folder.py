@@ -1,0 +1,297 @@
+"""A run folder: the outputs of one profile, and a manifest that vouches for them.
+
+``manifest.json`` is written last and lists every output with its size and
+SHA-256. A file without an entry there is not an output, and a folder without a
+manifest is not a run.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from des_cli.errors import FileAccessError, Problem
+from des_cli.model.arrays import Floats
+from des_cli.model.run import Run
+from des_cli.runs_out import atomic
+from des_cli.runs_out.manifest import (
+    MANIFEST,
+    encode_json,
+    encode_manifest,
+    is_run,
+    parse_object,
+    read_bytes,
+    read_manifest,
+)
+from des_cli.runs_out.run_profile import encode_run_profile
+from des_cli.runs_out.tables import (
+    command_columns,
+    encode_table,
+    trajectory_columns,
+    trajectory_names,
+)
+
+COMMANDS = "commands.csv"
+TRAJECTORY = "trajectory.parquet"
+PROFILE = "profile.yaml"
+METRICS = "metrics.json"
+
+
+@dataclass(frozen=True)
+class StoredRun:
+    """A run as it was read back from its folder, every digest checked.
+
+    Parameters
+    ----------
+    name : str
+        The profile's name.
+    folder : Path
+    metrics : dict
+        The content of ``metrics.json``.
+    trajectory : dict of str to (n,) array
+        The columns of ``trajectory.parquet``.
+    manifest : dict
+        The content of ``manifest.json``.
+    """
+
+    name: str
+    folder: Path
+    metrics: dict[str, Any]
+    trajectory: dict[str, Floats]
+    manifest: dict[str, Any]
+
+
+def write_run(
+    run: Run, folder: str | os.PathLike[str], *, plots: bool = True, overwrite: bool = False
+) -> tuple[Path, ...]:
+    """Write the outputs of a run into its folder.
+
+    Everything is built aside first. A folder that does not exist yet appears
+    whole, in one step. Into one that does, the files are moved with the
+    manifest last, and files that are not the run's stay untouched.
+
+    Parameters
+    ----------
+    run : Run
+    folder : path
+        The folder itself; its parents are made where they are missing.
+    plots : bool
+        Whether to draw ``plots/*.png``.
+    overwrite : bool
+        Whether a run that is already there may be replaced. Needed for every
+        folder that is not empty.
+
+    Returns
+    -------
+    tuple of Path
+        The files, the manifest last.
+
+    Raises
+    ------
+    FileAccessError
+        If the folder holds something and may not be written to, or a file
+        cannot be written.
+    NotReleasedError
+        If a value of a table is not a finite number.
+    """
+    target = Path(folder)
+    _require_free(target, overwrite)
+    outputs = _outputs(run, plots)
+    outputs[MANIFEST] = encode_manifest(run.profile, outputs)
+    if target.is_dir():
+        _fill(target, outputs)
+    else:
+        _appear(target, outputs)
+    return tuple(target / name for name in outputs)
+
+
+def read_run(folder: str | os.PathLike[str]) -> StoredRun:
+    """Read a run back, and check every file against the manifest.
+
+    Raises
+    ------
+    FileAccessError
+        If a file is missing, changed or unreadable; with all problems.
+    """
+    home = Path(folder)
+    manifest = read_manifest(home)
+    problems: list[Problem] = []
+    content: dict[str, bytes] = {}
+    for entry in manifest["files"]:
+        path = home / entry["name"]
+        try:
+            data = read_bytes(path)
+        except FileAccessError as error:
+            problems += error.problems
+            continue
+        if len(data) != entry["size"] or hashlib.sha256(data).hexdigest() != entry["sha256"]:
+            what = "is not the file that the manifest lists: it was changed after the run"
+            problems.append(Problem(str(path), what))
+        if entry["name"] in (METRICS, TRAJECTORY):
+            content[entry["name"]] = data
+    listed = {entry["name"] for entry in manifest["files"]}
+    problems += [
+        Problem(str(home / MANIFEST), f"does not list {name}")
+        for name in (COMMANDS, TRAJECTORY, METRICS)
+        if name not in listed
+    ]
+    if problems:
+        raise FileAccessError(problems)
+    return StoredRun(
+        name=manifest["profile"]["name"],
+        folder=home,
+        metrics=parse_object(home / METRICS, content[METRICS]),
+        trajectory=_read_trajectory(home / TRAJECTORY, content[TRAJECTORY]),
+        manifest=manifest,
+    )
+
+
+def discard_run(folder: str | os.PathLike[str]) -> None:
+    """Remove the outputs that a folder's manifest lists, the manifest first.
+
+    Nothing else in the folder is touched. A folder without a run is left as it
+    is.
+
+    Raises
+    ------
+    FileAccessError
+        If a file cannot be removed.
+    """
+    home = Path(folder)
+    if not is_run(home):
+        return
+    names = [entry["name"] for entry in read_manifest(home)["files"]]
+    try:
+        _remove(home, [MANIFEST])
+    finally:
+        # An interruption in between would leave files that nothing vouches for.
+        _remove(home, names)
+
+
+def _require_free(target: Path, overwrite: bool) -> None:
+    with atomic.plain_words(target, "cannot be written"):
+        if not target.exists() or (overwrite and target.is_dir()):
+            return
+        if not target.is_dir():
+            raise FileAccessError(
+                [Problem(str(target), "is a file; a run needs a folder, name another")]
+            )
+        # What a killed process left behind is nobody's work.
+        if all(atomic.is_temporary(path.name) for path in target.iterdir()):
+            return
+    if (target / MANIFEST).exists():
+        what = "already holds a run; --overwrite replaces it"
+    else:
+        what = "is not empty and holds no run; name another folder, or --overwrite to write into it"
+    raise FileAccessError([Problem(str(target), what)])
+
+
+def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
+    trajectory = trajectory_columns(run)
+    outputs = {
+        COMMANDS: encode_table(command_columns(run), "csv"),
+        TRAJECTORY: encode_table(trajectory, "parquet"),
+        METRICS: encode_json(run.metrics),
+    }
+    if run.metrics.get("parameters"):
+        outputs[PROFILE] = encode_run_profile(run, COMMANDS)
+    if plots:
+        # Imported here: matplotlib costs half a second that --no-plots does not need.
+        from des_cli.plots import draw_plots
+
+        figures = draw_plots(trajectory, run.metrics)
+        outputs |= {f"plots/{name}.png": png for name, png in figures.items()}
+    return outputs
+
+
+def _write_all(folder: Path, outputs: Mapping[str, bytes]) -> None:
+    for name, data in outputs.items():
+        path = folder / name
+        with atomic.plain_words(path, "cannot be written"):
+            path.parent.mkdir(exist_ok=True)
+        atomic.write_through(path, data)
+    for inner in {(folder / name).parent for name in outputs}:
+        atomic.sync_folder(inner)
+
+
+def _appear(target: Path, outputs: Mapping[str, bytes]) -> None:
+    """Build a folder beside its name, and give it the name when it is whole."""
+    with atomic.plain_words(target, "cannot be written"):
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with atomic.new_folder(target.parent, target.name) as building:
+            _write_all(building, outputs)
+            os.rename(building, target)
+        atomic.sync_folder(target.parent)
+
+
+def _fill(target: Path, outputs: Mapping[str, bytes]) -> None:
+    """Build inside an existing folder, then move every file to its place, the manifest last.
+
+    The run that was there loses its manifest before its first file is
+    replaced, so that a mixture is never a run.
+    """
+    with (
+        atomic.plain_words(target, "cannot be written"),
+        atomic.new_folder(target, MANIFEST) as building,
+    ):
+        _write_all(building, outputs)
+        discard_run(target)
+        # A manifest that is none of ours, or that is broken, also goes first.
+        (target / MANIFEST).unlink(missing_ok=True)
+        try:
+            for name in outputs:
+                (target / name).parent.mkdir(exist_ok=True)
+                if name == MANIFEST:
+                    for inner in {(target / other).parent for other in outputs}:
+                        atomic.sync_folder(inner)
+                os.replace(building / name, target / name)
+        except BaseException:
+            _remove(target, [name for name in outputs if not (building / name).exists()])
+            raise
+        atomic.sync_folder(target)
+
+
+def _remove(home: Path, names: Iterable[str]) -> None:
+    # A linked folder may lead out of this one; what is there is not the run's.
+    inside = [
+        name for name in names if (home / name).parent.resolve().is_relative_to(home.resolve())
+    ]
+    for name in inside:
+        path = home / name
+        with atomic.plain_words(path, "cannot be removed"):
+            path.unlink(missing_ok=True)
+    for folder in {(home / name).parent for name in inside} - {home}:
+        # Stays where something else is in it.
+        with suppress(OSError):
+            folder.rmdir()
+    atomic.sync_folder(home)
+
+
+def _read_trajectory(path: Path, data: bytes) -> dict[str, Floats]:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        table = pq.read_table(pa.BufferReader(data))
+        columns = {
+            name: np.asarray(column.to_numpy(), dtype=np.float64)
+            for name, column in zip(table.column_names, table.columns, strict=True)
+        }
+    except (pa.ArrowException, OSError, ValueError, TypeError) as error:
+        words = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise FileAccessError([Problem(str(path), f"cannot be read: {words}")]) from error
+    # A free motion has neither factors nor an adjoint; one within budgets per joint has ratios.
+    factors = 1 if "p" in columns else 3 if any(name.startswith("p_") for name in columns) else 0
+    adjoint = factors == 1 or any(name.startswith("adjoint_") for name in columns)
+    names = trajectory_names(factors, adjoint=adjoint)
+    absent = [name for name in names if name not in columns]
+    if absent:
+        raise FileAccessError([Problem(str(path), f"has no column {name}") for name in absent])
+    return columns

@@ -1,0 +1,51 @@
+"""A run as a profile of its own: the command table beside it, with the seat as it was found.
+
+Where a reduction found constants of the machine together with the motion, the table alone
+does not tell what the pilot feels: the seat is part of it.
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from des_cli.model.machines import MACHINES
+from des_cli.model.run import Run
+from des_cli.profiles_in.machine_yaml import machine_mapping
+
+
+def encode_run_profile(run: Run, table: str) -> bytes:
+    """Return the YAML of a profile that plays a run's command table.
+
+    Parameters
+    ----------
+    run : Run
+    table : str
+        Name of the command table's file in the same folder.
+    """
+    machine = run.profile.machine
+    built_in = MACHINES.get(machine.name) == machine
+    document = {
+        "format": "des-coriolis/1",
+        "name": run.profile.name,
+        "machine": machine.name if built_in else machine_mapping(machine),
+        "seat": {"yaw_rad": run.seat.yaw, "pitch_rad": run.seat.pitch},
+        "initial": {"arm_rad": float(run.commands.angle[0, 0])},
+        "samples": {"file": table},
+    }
+    lines = [
+        f"# {run.profile.name}, as it was reduced: the commands and the seat belong together.",
+        *(_found(run)),
+        # JSON is YAML, and every double reads back exactly
+        *(f"{key}: {json.dumps(value, ensure_ascii=False)}" for key, value in document.items()),
+    ]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _found(run: Run) -> list[str]:
+    parameters = run.metrics.get("parameters") or {}
+    return [
+        f"# {name}: {np.round(each['before_deg'], 3):g} -> {np.round(each['after_deg'], 3):g} deg"
+        for name, each in parameters.items()
+    ]

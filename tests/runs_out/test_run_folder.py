@@ -1,0 +1,331 @@
+"""A run folder: its manifest vouches for every file, or there is no run."""
+
+import hashlib
+import json
+import math
+import os
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from des_cli import __version__
+from des_cli.errors import FileAccessError, NotReleasedError
+from des_cli.model.run import Run
+from des_cli.runs_out.manifest import encode_json, is_run, read_manifest
+from des_cli.runs_out.run_folder import discard_run, read_run, write_run
+from des_cli.runs_out.tables import trajectory_columns
+
+MakeRun = Callable[..., Run]
+
+FILES = ["commands.csv", "manifest.json", "metrics.json", "trajectory.parquet"]
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+@pytest.fixture
+def stored(tmp_path: Path, synthetic_run: MakeRun) -> Path:
+    folder = tmp_path / "runs" / "cobra"
+    write_run(synthetic_run(), folder, plots=False)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("control", "adjoint", "figures"),
+    [("scalar", 3, 8), ("per-joint", 3, 8), ("per-joint", 0, 7), ("free", 0, 6)],
+)
+def test_everything_reads_back(
+    tmp_path: Path, synthetic_run: MakeRun, control: str, adjoint: int, figures: int
+) -> None:
+    run = synthetic_run(101, control=control)
+    solution = replace(run.solution, adjoint=run.solution.adjoint[:, :adjoint])
+    run = replace(run, solution=solution)
+    folder = tmp_path / "runs" / "cobra"
+    written = write_run(run, folder)
+    assert written[-1] == folder / "manifest.json"
+    assert sorted(str(path.relative_to(folder)) for path in written) == sorted(tree(folder))
+    assert len(list((folder / "plots").glob("*.png"))) == figures
+    found = read_run(folder)
+    assert found.name == "cobra"
+    assert found.metrics == run.metrics
+    expected = trajectory_columns(run)
+    assert list(found.trajectory) == list(expected)
+    for name, values in expected.items():
+        np.testing.assert_array_equal(found.trajectory[name], values)
+
+
+def test_the_manifest_lists_every_file_with_size_and_digest(stored: Path) -> None:
+    manifest = json.loads((stored / "manifest.json").read_bytes())
+    assert manifest["format"] == "des-coriolis/run/1"
+    assert manifest["tool"] == {"name": "des-coriolis", "version": __version__}
+    assert manifest["profile"] == {"name": "cobra", "sha256": "5c" * 32}
+    listed = {entry["name"]: entry for entry in manifest["files"]}
+    files = tree(stored)
+    assert set(listed) == set(files) - {"manifest.json"}
+    for name, entry in listed.items():
+        assert entry["size"] == len(files[name])
+        assert entry["sha256"] == hashlib.sha256(files[name]).hexdigest()
+
+
+def test_the_same_run_gives_the_same_bytes_anywhere(tmp_path: Path, synthetic_run: MakeRun) -> None:
+    write_run(synthetic_run(), tmp_path / "one")
+    write_run(synthetic_run(), tmp_path / "two" / "deeper")
+    assert tree(tmp_path / "one") == tree(tmp_path / "two" / "deeper")
+
+
+@pytest.mark.parametrize("plots", [False, True])
+def test_a_folder_that_holds_a_run_is_refused_or_replaced(
+    stored: Path, synthetic_run: MakeRun, plots: bool
+) -> None:
+    before = tree(stored)
+    with pytest.raises(FileAccessError, match="--overwrite"):
+        write_run(synthetic_run(51), stored, plots=plots)
+    assert tree(stored) == before
+    write_run(synthetic_run(51), stored, plots=plots, overwrite=True)
+    assert len(read_run(stored).trajectory["t_s"]) == 51
+
+
+def test_replacing_removes_what_the_new_run_does_not_have(
+    stored: Path, synthetic_run: MakeRun
+) -> None:
+    write_run(synthetic_run(), stored, plots=True, overwrite=True)
+    write_run(synthetic_run(), stored, plots=False, overwrite=True)
+    assert sorted(path.name for path in stored.iterdir()) == FILES
+
+
+def test_foreign_files_are_refused_and_never_destroyed(
+    tmp_path: Path, synthetic_run: MakeRun
+) -> None:
+    (tmp_path / "plots").mkdir()
+    foreign = {"thesis.tex": b"years of work", "plots/mine.png": b"mine"}
+    for name, data in foreign.items():
+        (tmp_path / name).write_bytes(data)
+    with pytest.raises(FileAccessError, match="not empty and holds no run"):
+        write_run(synthetic_run(), tmp_path)
+    assert tree(tmp_path) == foreign
+    write_run(synthetic_run(), tmp_path, overwrite=True)
+    write_run(synthetic_run(), tmp_path, plots=False, overwrite=True)
+    discard_run(tmp_path)
+    assert tree(tmp_path) == foreign
+
+
+def test_an_empty_folder_is_used_and_a_file_is_refused(
+    tmp_path: Path, synthetic_run: MakeRun
+) -> None:
+    (tmp_path / "empty").mkdir()
+    # As a killed process leaves it.
+    (tmp_path / "empty" / ".manifest.json.partial-0123abcd").mkdir()
+    write_run(synthetic_run(), tmp_path / "empty", plots=False)
+    assert is_run(tmp_path / "empty")
+    (tmp_path / "file").write_bytes(b"data")
+    with pytest.raises(FileAccessError, match="is a file"):
+        write_run(synthetic_run(), tmp_path / "file", overwrite=True)
+    assert (tmp_path / "file").read_bytes() == b"data"
+
+
+class Fuse:
+    """Makes the n-th call of a function of ``os`` fail."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, name: str, blow_at: int) -> None:
+        self.calls, self.blow_at, self.really = 0, blow_at, getattr(os, name)
+        monkeypatch.setattr(os, name, self)
+
+    def __call__(self, *args: Any, **options: Any) -> Any:
+        self.calls += 1
+        if self.calls == self.blow_at:
+            raise KeyboardInterrupt
+        return self.really(*args, **options)
+
+
+@pytest.mark.parametrize(
+    ("existing", "name"),
+    [
+        *(("absent", name) for name in ("open", "fsync", "mkdir", "rename")),
+        *(
+            (existing, name)
+            for existing in ("empty", "run", "foreign")
+            for name in ("open", "fsync", "mkdir", "replace")
+        ),
+    ],
+)
+def test_an_interruption_at_any_moment_leaves_no_output(
+    tmp_path: Path,
+    synthetic_run: MakeRun,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    existing: str,
+) -> None:
+    """Every call is interrupted once; then there is the old run, or the new one, or none."""
+    run, target = synthetic_run(11), tmp_path / "cobra"
+    for blow_at in range(1, 50):
+        shutil.rmtree(target, ignore_errors=True)
+        if existing == "run":
+            write_run(synthetic_run(21), target, plots=False)
+        elif existing != "absent":
+            target.mkdir()
+        if existing == "foreign":
+            (target / "thesis.tex").write_bytes(b"years of work")
+        old = tree(target)
+        with monkeypatch.context() as patch:
+            fuse = Fuse(patch, name, blow_at)
+            try:
+                write_run(run, target, plots=False, overwrite=True)
+            except KeyboardInterrupt:
+                pass
+            else:
+                assert fuse.calls < blow_at
+                break
+        assert [path.name for path in tmp_path.iterdir()] in ([], ["cobra"])
+        left = tree(target)
+        if left != old and is_run(target):
+            assert len(read_run(target).trajectory["t_s"]) == 11
+        elif left != old:
+            assert set(left) == set(old) - set(FILES)
+        if existing == "foreign":
+            assert left["thesis.tex"] == b"years of work"
+    else:
+        pytest.fail("the fuse never came to its end")
+    assert blow_at > 1, "nothing was interrupted"
+
+
+def test_a_value_that_is_no_number_leaves_no_folder(tmp_path: Path, synthetic_run: MakeRun) -> None:
+    run = synthetic_run()
+    run.before.seat_g[3, 1, 2] = math.nan
+    with pytest.raises(NotReleasedError, match="seat_gz_before_g"):
+        write_run(run, tmp_path / "cobra")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["commands.csv", "metrics.json", "trajectory.parquet"])
+def test_a_changed_byte_is_found(stored: Path, name: str) -> None:
+    data = bytearray((stored / name).read_bytes())
+    data[len(data) // 2] ^= 1
+    (stored / name).write_bytes(data)
+    with pytest.raises(FileAccessError, match="is not the file that the manifest lists") as caught:
+        read_run(stored)
+    assert [problem.where for problem in caught.value.problems] == [str(stored / name)]
+
+
+def test_all_problems_are_told_at_once(stored: Path) -> None:
+    (stored / "commands.csv").unlink()
+    (stored / "metrics.json").write_bytes(b"{}")
+    with pytest.raises(FileAccessError) as caught:
+        read_run(stored)
+    assert len(caught.value.problems) == 2
+    assert all(str(stored) in str(problem) for problem in caught.value.problems)
+
+
+def rewrite(folder: Path, **changes: Any) -> None:
+    manifest = json.loads((folder / "manifest.json").read_bytes()) | changes
+    (folder / "manifest.json").write_bytes(json.dumps(manifest).encode())
+
+
+def entry(name: object = "metrics.json", size: object = 0, sha256: object = "0" * 64) -> object:
+    return {"name": name, "size": size, "sha256": sha256}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"format": "des-coriolis/run/2"},
+        {"format": ["des-coriolis/run/1"]},
+        {"profile": {}},
+        {"profile": {"name": 7}},
+        {"files": None},
+        {"files": ["metrics.json"]},
+        {"files": [entry(name="../secret")]},
+        {"files": [entry(name="/etc/passwd")]},
+        {"files": [entry(name="manifest.json")]},
+        {"files": [entry(name="")]},
+        {"files": [entry(name="a\0b")]},
+        {"files": [entry(size=True)]},
+        {"files": [entry(size="12")]},
+        {"files": [entry(sha256="0" * 63)]},
+        {"files": [entry(sha256=None)]},
+    ],
+)
+def test_a_manifest_of_another_form_is_no_run(stored: Path, changes: dict[str, Any]) -> None:
+    rewrite(stored, **changes)
+    assert not is_run(stored)
+    with pytest.raises(FileAccessError, match=r"manifest\.json"):
+        read_run(stored)
+
+
+def test_a_manifest_that_lists_too_little_is_refused(stored: Path) -> None:
+    rewrite(stored, files=[])
+    with pytest.raises(FileAccessError) as caught:
+        read_run(stored)
+    assert len(caught.value.problems) == 3
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"[]", b"null", b"\xff\xfe", b"{", b'{"a":1}x', b"[" * 100_000]
+)
+def test_a_manifest_that_is_no_json_object_is_one_line(stored: Path, data: bytes) -> None:
+    (stored / "manifest.json").write_bytes(data)
+    with pytest.raises(FileAccessError, match="JSON") as caught:
+        read_manifest(stored)
+    assert "\n" not in str(caught.value)
+
+
+def replace_file(folder: Path, name: str, data: bytes) -> None:
+    """Replace a file and have the manifest vouch for it."""
+    (folder / name).write_bytes(data)
+    manifest = json.loads((folder / "manifest.json").read_bytes())
+    for listed in manifest["files"]:
+        if listed["name"] == name:
+            listed |= {"size": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+    rewrite(folder, **manifest)
+
+
+@pytest.mark.parametrize("data", [b"", b"PAR1PAR1", b"not parquet" * 100])
+def test_a_trajectory_that_is_no_parquet_is_one_line(stored: Path, data: bytes) -> None:
+    replace_file(stored, "trajectory.parquet", data)
+    with pytest.raises(FileAccessError, match=r"trajectory\.parquet: cannot be read") as caught:
+        read_run(stored)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_folder_without_a_manifest_is_no_run(tmp_path: Path, stored: Path) -> None:
+    assert is_run(stored)
+    (stored / "manifest.json").unlink()
+    assert not is_run(stored)
+    assert not is_run(tmp_path / "absent")
+    with pytest.raises(FileAccessError, match=r"is not a run: it has no manifest\.json"):
+        read_run(stored)
+
+
+def test_a_folder_that_was_still_being_built_is_no_run(stored: Path) -> None:
+    assert not is_run(stored.rename(stored.parent / ".cobra.partial-0123abcd"))
+
+
+def test_discarding_follows_no_link_out_of_the_folder(tmp_path: Path, stored: Path) -> None:
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "x.png").write_bytes(b"mine")
+    (stored / "plots").symlink_to(outside)
+    rewrite(stored, files=[entry(name="plots/x.png")])
+    discard_run(stored)
+    assert (outside / "x.png").read_bytes() == b"mine"
+    assert not is_run(stored)
+
+
+def test_json_is_exact_ordered_and_knows_no_infinity() -> None:
+    content = {"b": np.float64(0.1), "a": {"x": math.inf, "n": np.int64(3), "ok": np.True_}}
+    content["c"] = [np.nan, np.array([1e-300, 2.5])]
+    data = encode_json(content)
+    assert data.endswith(b"}\n")
+    found = json.loads(data)
+    assert list(found) == ["b", "a", "c"]
+    assert found == {"b": 0.1, "a": {"x": None, "n": 3, "ok": True}, "c": [None, [1e-300, 2.5]]}
+    assert b"true" in data
