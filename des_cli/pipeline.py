@@ -19,6 +19,7 @@ from des_cli.reduction.consistency import require_consistent
 from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion
+from des_cli.verify.claim import Claim
 from des_cli.verify.verify import verify
 
 
@@ -104,6 +105,13 @@ def _checks(
 ) -> tuple[Check, ...]:
     if not found.solution.usable:
         return ()
-    return verify(
-        profile, reference, found.desired, found.seat, found.solution, found.posed, commands
+    claim = Claim(
+        profile=profile,
+        asked=reference,
+        desired=found.desired if found.posed is None else found.posed.desired,
+        seat=found.seat,
+        solution=found.solution,
+        posed=found.posed,
+        commands=commands,
     )
+    return verify(claim)

@@ -32,7 +32,8 @@ class Claim:
     solution : Solution
     posed : Problem, optional
         The problem of factors on the desired rates, as it was solved, along ``desired``;
-        None of a free motion.
+        None of a free motion, and of one per joint with budgets, which is found as a free
+        one.
     commands : Motion, optional
         The motion of the command table, where it has leads before and after.
     """
