@@ -5,6 +5,7 @@ A shared option is a decorator; a command picks those that it understands.
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -83,6 +84,25 @@ def setting_options(command: F) -> F:
         help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
     )
     return settings(columns(command))
+
+
+def machine_option(command: F) -> F:
+    """Add ``--machine``, which names another machine than the profile's."""
+    return click.option(
+        "--machine",
+        metavar="NAME|FILE",
+        callback=_require_name,
+        help="A built-in machine or a YAML file, instead of the profile's.  [default: des]",
+    )(command)
+
+
+def machine_settings(machine: str | None) -> tuple[str, ...]:
+    """Turn ``--machine`` into a setting, which stands before those that change the machine.
+
+    >>> machine_settings("my machine.yaml")
+    ('machine="my machine.yaml"',)
+    """
+    return () if machine is None else (f"machine={json.dumps(machine, ensure_ascii=False)}",)
 
 
 def text_or_json_option(text: str) -> Callable[[F], F]:
@@ -297,6 +317,14 @@ def _bracketed(value: Any) -> str:
     """Write ``1,2,3`` as a list; anything else as it is."""
     text = str(value).strip()
     return f"[{text}]" if "," in text and not text.startswith("[") else text
+
+
+def _require_name(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> str | None:
+    if value is not None and not value.strip():
+        raise click.BadParameter("is empty: name a machine or a file.")
+    return value
 
 
 def _require_assignments(

@@ -12,6 +12,8 @@ from des_cli.cli.options import (
     DEFAULT_RUNS,
     TABLE_FORMATS,
     existing_folder,
+    machine_option,
+    machine_settings,
     profile_argument,
     read_stdin,
     reduction_options,
@@ -36,6 +38,7 @@ Examples:
 """,
 )
 @profile_argument
+@machine_option
 @setting_options
 @reduction_options
 @click.option(
@@ -69,6 +72,7 @@ Examples:
 def reduce(
     console: Console,
     profiles: tuple[str, ...],
+    machine: str | None,
     settings: tuple[str, ...],
     columns: dict[str, str],
     out: str | None,
@@ -97,7 +101,7 @@ def reduce(
     batch = [
         Job(
             source=source,
-            settings=(*settings, *reduction_settings(reduction)),
+            settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
             columns=columns,
             stdin=stdin if source == STANDARD_STREAM else None,
             out=DEFAULT_RUNS if out is None else out,

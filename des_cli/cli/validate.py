@@ -10,6 +10,8 @@ import click
 
 from des_cli.cli.console import Console
 from des_cli.cli.options import (
+    machine_option,
+    machine_settings,
     profile_argument,
     read_stdin,
     reduction_options,
@@ -36,6 +38,7 @@ Examples:
 """,
 )
 @profile_argument
+@machine_option
 @setting_options
 @reduction_options
 @text_or_json_option("json prints one object a line.")
@@ -44,6 +47,7 @@ Examples:
 def validate(
     console: Console,
     profiles: tuple[str, ...],
+    machine: str | None,
     settings: tuple[str, ...],
     columns: dict[str, str],
     form: str,
@@ -63,7 +67,7 @@ def validate(
     for source in profiles:
         job = Job(
             source,
-            settings=(*settings, *reduction_settings(reduction)),
+            settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
             columns=columns,
             stdin=stdin if source == STANDARD_STREAM else None,
         )
