@@ -13,6 +13,7 @@ from des_cli.model.motion import Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Check, Run
 from des_cli.model.solution import Iteration
+from des_cli.model.stage import OnStage, untold
 from des_cli.notices import find_notices
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.consistency import require_consistent
@@ -24,7 +25,10 @@ from des_cli.verify.verify import verify
 
 
 def reduce_profile(
-    profile: Profile, *, on_iteration: Callable[[Iteration], None] | None = None
+    profile: Profile,
+    *,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
 ) -> Run:
     """Reduce the Coriolis of one maneuver.
 
@@ -33,6 +37,8 @@ def reduce_profile(
     profile : Profile
     on_iteration : callable, optional
         Called with each line of the solver's log.
+    on_stage : callable, optional
+        Called with a few words for what is done next, at each step that may take long.
 
     Returns
     -------
@@ -46,8 +52,10 @@ def reduce_profile(
         If the reduction asks for things that exclude each other.
     """
     require_consistent(profile.reduction, profile.name)
+    on_stage("desired motion")
     asked = make_desired(profile)
-    found = find_motion(profile, asked.motion, on_iteration)
+    found = find_motion(profile, asked.motion, on_iteration, on_stage)
+    on_stage("baselines")
     found, led = _with_leads(profile, found)
     modified = found.solution.modified
     before = respond(profile.machine, profile.seat, asked.motion)
@@ -72,6 +80,7 @@ def reduce_profile(
     )
     metrics = measure(measured)
     metrics["notices"] = find_notices(asked, metrics)
+    on_stage("verification")
     return Run(
         profile=profile,
         asked=asked,

@@ -21,6 +21,7 @@ from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Run
 from des_cli.model.solution import Iteration, Solution
+from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import BASELINE, SOLVED, TradePoint
 from des_cli.pipeline import reduce_profile
 from des_cli.reduction.baseline import compare
@@ -39,7 +40,9 @@ the regularisation beside a budget costs less than that."""
 
 
 def trade_point(
-    profile: Profile, on_iteration: Callable[[Iteration], None] | None = None
+    profile: Profile,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
 ) -> TradePoint:
     """Reduce a profile and return its point on the trade-off curve.
 
@@ -49,13 +52,15 @@ def trade_point(
         With a budget, or a weight r2, which is what the point is named after.
     on_iteration : callable, optional
         Called with each line of the solver's log.
+    on_stage : callable, optional
+        Called with what is done next.
 
     Raises
     ------
     UsageError
         If the reduction asks for things that exclude each other.
     """
-    run = reduce_profile(profile, on_iteration=on_iteration)
+    run = reduce_profile(profile, on_iteration=on_iteration, on_stage=on_stage)
     wanted = profile.reduction
     swept, value = (
         (wanted.budget[0].metric, wanted.budget[0].most)

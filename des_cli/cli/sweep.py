@@ -188,11 +188,17 @@ def _run(
     from des_cli.sweep import check_points, exit_code_of, run_points
 
     results = []
-    with local_executor(min(workers, len(jobs)) if workers else workers) as executor:
+    with (
+        local_executor(min(workers, len(jobs)) if workers else workers) as executor,
+        console.working(len(jobs), "points") as line,
+    ):
+        line.stage("reading")
         profile = check_points(jobs)
         live = executor is None and console.verbosity >= VERBOSE
-        for result in run_points(jobs, executor, console.iteration if live else None):
+        on_iteration = console.follow(line, log=live)
+        for result in run_points(jobs, executor, on_iteration, line.stage):
             results.append(result)
+            line.advance()
             _tell(console, result, live)
     points = [point for result in results for point in result.points]
     from des_cli.tradeoff import doubts

@@ -64,27 +64,35 @@ def validate(
 
     stdin = read_stdin(profiles)
     codes = set()
-    for source in profiles:
-        job = Job(
-            source,
-            settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
-            columns=columns,
-            stdin=stdin if source == STANDARD_STREAM else None,
-        )
-        try:
-            profile = load_job(job)
-            require_consistent(profile.reduction, profile.name)
-        except (DesError, OSError) as error:
-            failure = Failure.of(error)
-            codes.add(failure.exit_code)
-            console.failure(failure)
-            if form == "json":
-                write_data(json.dumps(_rejected(source, failure)) + "\n")
-            continue
-        facts = understood(source, profile)
-        write_data((json.dumps(facts) if form == "json" else _line(facts)) + "\n")
+    with console.working(len(profiles)) as line:
+        for source in profiles:
+            job = Job(
+                source,
+                settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
+                columns=columns,
+                stdin=stdin if source == STANDARD_STREAM else None,
+            )
+            line.stage(f"reading {source}")
+            try:
+                profile = load_job(job)
+                require_consistent(profile.reduction, profile.name)
+            except (DesError, OSError) as error:
+                failure = Failure.of(error)
+                codes.add(failure.exit_code)
+                console.failure(failure)
+                if form == "json":
+                    _write(console, json.dumps(_rejected(source, failure)))
+            else:
+                facts = understood(source, profile)
+                _write(console, json.dumps(facts) if form == "json" else _line(facts))
+            line.advance()
     # Several kinds of failure have no code in common but that of a batch.
     return codes.pop() if len(codes) == 1 else ExitCode.FILE if codes else ExitCode.DONE
+
+
+def _write(console: Console, line: str) -> None:
+    with console.aside():
+        write_data(line + "\n")
 
 
 def understood(source: str, profile: Profile) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from des_cli.model.machine import Seat
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution
+from des_cli.model.stage import OnStage, untold
 from des_cli.reduction.budget import pose_budget, spend_budgets
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.free.method import find_free_motion
@@ -47,7 +48,12 @@ class Found:
     solution: Solution
 
 
-def find_motion(profile: Profile, reference: Motion, report: Report | None = None) -> Found:
+def find_motion(
+    profile: Profile,
+    reference: Motion,
+    report: Report | None = None,
+    on_stage: OnStage = untold,
+) -> Found:
     """Find the modified motion that a profile asks for.
 
     Parameters
@@ -58,16 +64,20 @@ def find_motion(profile: Profile, reference: Motion, report: Report | None = Non
         What the profile asks of the joints.
     report : callable, optional
         Called with each line of the solver's log.
+    on_stage : callable, optional
+        Called with what is done next.
     """
     reduction = profile.reduction
+    on_stage("motion inside the limits")
     if moves_freely(reduction):
-        free = find_free_motion(FreeTask.of(profile, reference), report)
+        free = find_free_motion(FreeTask.of(profile, reference), report, on_stage)
         problem = pose_problem(profile, free.desired)
         return Found(free.desired, free.seat, problem, None, free.solution)
     desired, trouble = executable_motion(profile, reference)
     problem = pose_problem(profile, desired, reference)
     if trouble:
         return Found(desired, profile.seat, problem, problem, not_attempted(problem, trouble))
+    on_stage("factors on the desired rates")
     posed, solution = solve(problem, reduction, report)
     return Found(desired, profile.seat, problem, posed, solution)
 

@@ -26,6 +26,7 @@ from des_cli.model.metric import Budget, MetricKey
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Reduction
 from des_cli.model.solution import Iteration
+from des_cli.model.stage import OnStage, untold
 from des_cli.reduction.executable import (
     ExecutableSpline,
     fit_for_table,
@@ -104,7 +105,9 @@ budget binds."""
 
 
 def find_free_motion(
-    task: FreeTask, report: Callable[[Iteration], None] | None = None
+    task: FreeTask,
+    report: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
 ) -> FreeResult:
     """Find the motion with the least cost inside limits and budgets.
 
@@ -113,6 +116,8 @@ def find_free_motion(
     task : FreeTask
     report : callable, optional
         Called with each line of the solver's log.
+    on_stage : callable, optional
+        Called with what is done next.
 
     Returns
     -------
@@ -120,15 +125,15 @@ def find_free_motion(
         Its solution is ``infeasible`` where no executable motion keeps the budgets, and
         passed through where the desired motion makes no cross-coupling.
     """
-    search = _Search(task, StepLog(task.reduction.max_iterations, report))
+    search = _Search(task, StepLog(task.reduction.max_iterations, report), on_stage)
     return search.run()
 
 
 class _Search:
     """The search for one task: its grids, its starts, and the budgets of its table."""
 
-    def __init__(self, task: FreeTask, log: StepLog) -> None:
-        self.task, self.log = task, log
+    def __init__(self, task: FreeTask, log: StepLog, on_stage: OnStage) -> None:
+        self.task, self.log, self.on_stage = task, log, on_stage
         self.answers = Answers(task, log)
         self.t = task.reference.t
         self.warm = False
@@ -154,6 +159,7 @@ class _Search:
         outcome: Outcome | None = None
         x = start = np.zeros(0)
         for level, fit in enumerate(fits):
+            self.on_stage(f"grid {level + 1} of {len(fits)}")
             last = level == len(fits) - 1
             level_budgets = budgets if last else _drawn_in(budgets)
             program = self._program(fit, level_budgets)
@@ -295,6 +301,7 @@ class _Search:
         allowed = {b.metric: b.most for b in self.task.reduction.budget}
         best: FreeResult | None = None
         for attempt in range(SETTLINGS):
+            self.on_stage("settling the table" + f", attempt {attempt + 1}" * (attempt > 0))
             program = self._program(fit, budgets)
             modified, seat = self._table(program, fit, outcome.x)
             deviation = Deviation.between(
