@@ -88,8 +88,13 @@ def _replaced(metrics: dict[str, Any]) -> str:
     moved = [f"{joint} {value:.3g} rad" for joint, value in change.items() if value > NOTICEABLE]
     if not moved:
         return ""
+    why = (
+        "breaks limits; it was replaced by the nearest one inside them"
+        if metrics["executable"]["breaks_limits"]
+        else "was made consistent: its angles are the integrals of its rates"
+    )
     return (
-        "the desired motion breaks limits; it was replaced by the nearest one inside them, "
+        f"the desired motion {why}, "
         f"changed by up to {', '.join(moved)}; what is felt is measured against the profile"
     )
 

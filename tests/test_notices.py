@@ -28,6 +28,7 @@ def metrics(
     vector: float | None = 0.4,
     felt: float = 0.1,
     turning: float = 0.4,
+    broken: bool = True,
     solver: dict[str, Any] | None = None,
     **reductions: float | None,
 ) -> dict[str, Any]:
@@ -38,7 +39,10 @@ def metrics(
     return {
         "solver": {"status": status, "axes": "report", "message": "off by 1e-7"} | (solver or {}),
         "coriolis": {**coriolis, "objective": {"reduction": objective}},
-        "executable": {"joint_change_max_rad": {"arm": 0.0, "fork": 0.5 * change, "cab": change}},
+        "executable": {
+            "breaks_limits": broken,
+            "joint_change_max_rad": {"arm": 0.0, "fork": 0.5 * change, "cab": change},
+        },
         "fidelity": {
             "joint_deviation_relative": 0.05,
             "seat_rate_deviation_relative": felt,
@@ -72,7 +76,11 @@ def test_a_damped_inverse_is_told_with_its_times_and_its_residual() -> None:
 def test_a_replaced_motion_is_told_by_joint_where_it_can_be_noticed() -> None:
     (notice,) = find_notices(asked(), metrics(change=0.0015))
     assert "changed by up to cab 0.0015 rad" in notice
+    assert "breaks limits" in notice
     assert "fork" not in notice
+    (kept,) = find_notices(asked(), metrics(change=0.0015, broken=False))
+    assert "limits" not in kept
+    assert "made consistent" in kept
     assert find_notices(asked(), metrics(change=0.0005)) == []
 
 

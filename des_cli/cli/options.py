@@ -173,6 +173,12 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
     ),
     ("lead_in", "SECONDS", "Ramp from rest to the start in this time."),
     ("lead_out", "SECONDS", "Ramp from the end to rest in this time."),
+    (
+        "allow_change",
+        "SHARE",
+        "Let conditioning and limits change so much of the record's seat rate or G first; the "
+        "budgets are then what the reduction may add.",
+    ),
     ("tolerance", "RAD_S2", "Largest Coriolis component that --method zero leaves."),
     ("iterations", click.IntRange(min=1), "Backward-forward sweeps of report-sweep."),
 )

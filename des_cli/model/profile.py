@@ -128,6 +128,10 @@ class Reduction:
     lead_in, lead_out : float
         Time [s] in which the command table ramps from rest to the maneuver's
         start, and from its end to rest; 0 for none.
+    allow_change : float, optional
+        Share of the record's seat rate, or of its G, that conditioning, damping and the
+        limits may change before the reduction; the budgets are then what it may add. None
+        for the little that needs no allowance, within the budgets.
     tolerance : float
         Largest Coriolis component that ``method: zero`` leaves [rad/s^2].
     """
@@ -150,6 +154,7 @@ class Reduction:
     optimise: tuple[FreeParameter, ...] = ()
     lead_in: float = 0.0
     lead_out: float = 0.0
+    allow_change: float | None = None
     tolerance: float = 1e-4
 
     def __post_init__(self) -> None:

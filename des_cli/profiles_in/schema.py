@@ -248,6 +248,10 @@ class ReductionBase(Section):
     ends: Ends = OMITTED
     objective: Objective = OMITTED
     optimise: Annotated[list[FreeParameter], AfterValidator(_check_unequal)] = OMITTED
+    allow_change: Annotated[
+        Positive,
+        Field(description="share of the recorded seat rate or G that may change first"),
+    ] = OMITTED
     tolerance: Positive = OMITTED
 
 

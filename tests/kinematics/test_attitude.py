@@ -12,6 +12,7 @@ from des_cli.kinematics.attitude import (
     integrate_attitude,
     rotation,
     rotation_of_quaternion,
+    rotation_vector,
 )
 from des_cli.model.profile import BodyRates
 
@@ -101,3 +102,17 @@ def test_attitudes_stay_rotations():
     found = integrate_attitude(np.diff(t), sampled(tumble, t))
     np.testing.assert_allclose(np.swapaxes(found, 1, 2) @ found - np.eye(3), 0.0, atol=1e-12)
     np.testing.assert_allclose(np.linalg.det(found), 1.0, atol=1e-12)
+
+
+def test_a_rotation_vector_is_scipys_at_every_angle():
+    rng = np.random.default_rng(8)
+    axis = rng.normal(size=(60, 3))
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    angle = np.concatenate([[0.0, 1e-12, 1e-6, np.pi - 1e-9], rng.uniform(0.0, 3.1, 56)])
+    one = Rotation.random(60, random_state=3)
+    other = one * Rotation.from_rotvec(axis * angle[:, None])
+    found = rotation_vector(one.as_matrix(), other.as_matrix())
+    np.testing.assert_allclose(found, axis * angle[:, None], atol=1e-7)
+    np.testing.assert_allclose(
+        one.as_matrix() @ rotation(found), other.as_matrix(), rtol=0.0, atol=1e-14
+    )
