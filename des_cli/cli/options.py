@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 import click
 
+from des_cli.cli.conditioning_options import conditioning_options
 from des_cli.cli.console import Console
 from des_cli.errors import FileAccessError, Problem
 
@@ -65,7 +66,7 @@ def profile_argument(command: F) -> F:
 
 
 def setting_options(command: F) -> F:
-    """Add ``--set`` and ``--column``, which change how a profile is read."""
+    """Add ``--set``, ``--column`` and what conditions a record: how a profile is read."""
     settings = click.option(
         "--set",
         "settings",
@@ -80,9 +81,10 @@ def setting_options(command: F) -> F:
         metavar="NAME=HEADER",
         multiple=True,
         callback=_read_columns,
-        help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
+        help="Take a column of a CSV profile under its own header, such as t_s=t, or leave it out: "
+        "p_rad_s=; repeatable.",
     )
-    return settings(columns(command))
+    return settings(columns(conditioning_options(command)))
 
 
 def text_or_json_option(text: str) -> Callable[[F], F]:
@@ -314,7 +316,7 @@ def _read_columns(
     columns: dict[str, str] = {}
     for value in values:
         name, equals, header = value.partition("=")
-        if not name or not equals or not header:
+        if not name or not equals:
             raise click.BadParameter(f"{value!r} is not NAME=HEADER, such as t_s=t.")
         if name in columns:
             raise click.BadParameter(f"{name!r} is given twice.")
