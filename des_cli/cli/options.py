@@ -81,8 +81,7 @@ def setting_options(command: F) -> F:
         metavar="NAME=HEADER",
         multiple=True,
         callback=_read_columns,
-        help="Take a column of a CSV profile under its own header, such as t_s=t, or leave it out: "
-        "p_rad_s=; repeatable.",
+        help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
     )
     return settings(columns(conditioning_options(command)))
 
@@ -316,7 +315,7 @@ def _read_columns(
     columns: dict[str, str] = {}
     for value in values:
         name, equals, header = value.partition("=")
-        if not name or not equals:
+        if not name or not equals or not header:
             raise click.BadParameter(f"{value!r} is not NAME=HEADER, such as t_s=t.")
         if name in columns:
             raise click.BadParameter(f"{name!r} is given twice.")

@@ -11,6 +11,8 @@ ramp a ramp, and the noise of one sample hardly counts.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from des_cli.model.arrays import Floats
@@ -61,7 +63,13 @@ def smooth_command(
     if isinstance(command, JointCommands):
         values = np.column_stack([command.arm_rate, command.position])
         value, _, slope = smooth_samples(t, values, cutoff_hz)
-        return JointCommands(value[:, 0], value[:, 1:], slope[:-1, 1:], slope[1:, 1:])
+        return replace(
+            command,
+            arm_rate=value[:, 0],
+            position=value[:, 1:],
+            rate_start=slope[:-1, 1:],
+            rate_end=slope[1:, 1:],
+        )
     rates = mean_of_sides(np.stack([command.start, command.end], axis=1))
     value, middle, _ = smooth_samples(t, rates, cutoff_hz)
     return BodyRates(value[:-1], middle, value[1:], command.attitude)

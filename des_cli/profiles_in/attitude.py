@@ -13,7 +13,7 @@ import numpy as np
 
 from des_cli.errors import Problem, ProfileError
 from des_cli.kinematics.attitude_rates import LARGEST_TURN, rates_of_attitude, turns_between
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Floats, Indices
 from des_cli.model.profile import BodyRates
 from des_cli.profiles_in.conditioning_schema import EULER_ORDERS, EulerOrder
 from des_cli.profiles_in.csv_table import Header
@@ -36,7 +36,11 @@ _UNIT_NORM = 0.01
 
 
 def with_quaternions(
-    record: Mapping[str, Floats], euler: EulerOrder | None, header: Header, problems: list[Problem]
+    record: Mapping[str, Floats],
+    euler: EulerOrder | None,
+    header: Header,
+    rows: Indices,
+    problems: list[Problem],
 ) -> dict[str, Floats]:
     """Return a record whose attitude, if it has one, is unit quaternions.
 
@@ -49,6 +53,8 @@ def with_quaternions(
         The order of `EULER`.
     header : Header
         Of the file, for places.
+    rows : (n,) array
+        Which row of the file each of the record's is.
     problems : list of Problem
         Takes what is wrong.
     """
@@ -59,9 +65,8 @@ def with_quaternions(
             return rest
         attitude = _of_euler(np.column_stack([record[stem] for stem in EULER]), euler)
     elif QUATERNION[0] in record:
-        attitude = _normalised(
-            np.column_stack([record[name] for name in QUATERNION]), header, problems
-        )
+        recorded = np.column_stack([record[name] for name in QUATERNION])
+        attitude = _normalised(recorded, header, rows, problems)
     else:
         return rest
     return rest | {stem: attitude[:, k] for k, stem in enumerate(QUATERNION)}
@@ -88,14 +93,14 @@ def _of_euler(angles: Floats, order: EulerOrder) -> Floats:
     return found
 
 
-def _normalised(recorded: Floats, header: Header, problems: list[Problem]) -> Floats:
+def _normalised(recorded: Floats, header: Header, rows: Indices, problems: list[Problem]) -> Floats:
     norm = np.sqrt(np.sum(recorded**2, axis=1))
     wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_NORM)
     if len(wrong):
         first = int(wrong[0])
         problems.append(
             Problem(
-                f"{header.label}:{header.lines + first + 1}",
+                f"{header.label}:{header.lines + int(rows[first]) + 1}",
                 f"q0..q3: the attitude's norm is {norm[first]:.6g}, not 1 "
                 f"({len(wrong)} such row{'s' * (len(wrong) > 1)})",
             )
@@ -104,10 +109,8 @@ def _normalised(recorded: Floats, header: Header, problems: list[Problem]) -> Fl
     return np.asarray(recorded / norm[:, None])
 
 
-def rows_with_attitude(
-    record: Mapping[str, Floats], label: str, remarks: list[str]
-) -> dict[str, Floats]:
-    """Return the rows that have an attitude, where that is what is flown.
+def rows_with_attitude(record: Mapping[str, Floats], label: str, remarks: list[str]) -> Indices:
+    """Return which rows have an attitude, where that is what is flown.
 
     Parameters
     ----------
@@ -123,14 +126,13 @@ def rows_with_attitude(
         If fewer than two rows are left, or one is turned too far from the one before it.
     """
     attitude = np.column_stack([record[name] for name in QUATERNION])
-    known = np.all(np.isfinite(attitude), axis=1)
-    count = int(np.count_nonzero(known))
-    if count < 2:
-        what = f"has an attitude in {count} of {len(known)} rows, two are needed"
+    rows = np.flatnonzero(np.all(np.isfinite(attitude), axis=1))
+    if len(rows) < 2:
+        what = f"has an attitude in {len(rows)} of {len(attitude)} rows, two are needed"
         raise ProfileError([Problem(label, what)])
-    if lacking := len(known) - count:
-        remarks.append(f"{lacking} of {len(known)} rows have no attitude and were left out")
-    t, turn = record["t"][known], turns_between(attitude[known])
+    if lacking := len(attitude) - len(rows):
+        remarks.append(f"{lacking} of {len(attitude)} rows have no attitude and were left out")
+    t, turn = record["t"][rows], turns_between(attitude[rows])
     if wide := np.flatnonzero(turn > LARGEST_TURN).tolist():
         k = wide[0]
         what = (
@@ -139,7 +141,7 @@ def rows_with_attitude(
             f"{math.degrees(LARGEST_TURN):.0f}° a record does not tell which way; record more often"
         )
         raise ProfileError([Problem(label, what)])
-    return {stem: column[known] for stem, column in record.items()}
+    return rows
 
 
 def flown_attitude(record: Mapping[str, Floats], remarks: list[str]) -> tuple[Floats, BodyRates]:

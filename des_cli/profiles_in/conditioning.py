@@ -16,7 +16,7 @@ import numpy as np
 from des_cli.errors import Problem, ProfileError
 from des_cli.kinematics.attitude import quaternion_product
 from des_cli.kinematics.smoothing import why_not_smooth
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Floats, Indices
 from des_cli.profiles_in.attitude import QUATERNION, interpolate_attitude
 from des_cli.profiles_in.conditioning_schema import EulerOrder
 from des_cli.profiles_in.findings import Findings
@@ -112,15 +112,13 @@ def refuse_beside_expressions(present: Mapping[str, Any], name: str, findings: F
             findings.add([key], words, of_key=True)
 
 
-def trimmed(
-    record: Mapping[str, Floats], conditioning: Conditioning, label: str, remarks: list[str]
-) -> dict[str, Floats]:
-    """Return the rows of a record between two times.
+def rows_inside(t: Floats, conditioning: Conditioning, label: str, remarks: list[str]) -> Indices:
+    """Return which rows of a record are kept by the trim.
 
     Parameters
     ----------
-    record : mapping of str to (n,) array
-        Columns by their stem, among them ``t`` [s].
+    t : (n,) array
+        Times [s].
     conditioning : Conditioning
     label : str
         What messages call the file.
@@ -132,17 +130,16 @@ def trimmed(
     ProfileError
         If fewer than two rows are left.
     """
-    t = record["t"]
-    inside = (t >= conditioning.start) & (t <= conditioning.stop)
-    count = int(np.count_nonzero(inside))
-    if count == len(t):
-        return dict(record)
-    if count < 2:
+    rows = np.flatnonzero((t >= conditioning.start) & (t <= conditioning.stop))
+    if len(rows) == len(t):
+        return rows
+    if len(rows) < 2:
         reach = f"the record reaches from {t[0]:.6g} to {t[-1]:.6g} s"
-        raise _refused(label, "trim", f"leaves {count} of {len(t)} rows, two are needed; {reach}")
-    kept = t[inside]
-    remarks.append(f"trim: {count} of {len(t)} rows kept, {kept[0]:.6g} to {kept[-1]:.6g} s")
-    return {stem: column[inside] for stem, column in record.items()}
+        what = f"leaves {len(rows)} of {len(t)} rows, two are needed; {reach}"
+        raise _refused(label, "trim", what)
+    first, last = t[rows[0]], t[rows[-1]]
+    remarks.append(f"trim: {len(rows)} of {len(t)} rows kept, {first:.6g} to {last:.6g} s")
+    return rows
 
 
 def in_seat_axes(
@@ -152,6 +149,14 @@ def in_seat_axes(
 
     The rates are ``A w``; the attitude, which takes the body's axes to the
     inertial ones, is ``R A^T``.
+
+    Parameters
+    ----------
+    record : mapping of str to (n,) array
+        Columns by their stem.
+    conditioning : Conditioning
+    label : str
+        What messages call the file.
 
     Raises
     ------
@@ -185,8 +190,10 @@ def resampled(
 
     Parameters
     ----------
-    record, conditioning, label, remarks
-        As of `trimmed`.
+    record : mapping of str to (n,) array
+        Columns by their stem, among them ``t`` [s].
+    conditioning, label, remarks
+        As of `rows_inside`.
 
     Raises
     ------

@@ -18,7 +18,7 @@ from des_cli.profiles_in.attitude import (
     rows_with_attitude,
     with_quaternions,
 )
-from des_cli.profiles_in.conditioning import Conditioning, in_seat_axes, resampled, trimmed
+from des_cli.profiles_in.conditioning import Conditioning, in_seat_axes, resampled, rows_inside
 from des_cli.profiles_in.csv_table import Header, read_columns, split_header
 from des_cli.profiles_in.positions import middles_of_samples, rates_of_positions
 from des_cli.profiles_in.sampling import MAX_MAGNITUDE
@@ -117,14 +117,18 @@ def parse_samples(
     time = next(column for column in chosen if column.stem == "t")
     _check_times(header, time, values[:, chosen.index(time)], problems)
     _check_magnitudes(header, chosen, by_stem, problems)
-    by_stem = with_quaternions(by_stem, conditioning.euler, header, problems)
     if problems:
         raise ProfileError(problems)
-    by_stem = trimmed(by_stem, conditioning, label, remarks)
+    rows = rows_inside(by_stem["t"], conditioning, label, remarks)
+    by_stem = {stem: column[rows] for stem, column in by_stem.items()}
+    by_stem = with_quaternions(by_stem, conditioning.euler, header, rows, problems)
+    if problems:
+        raise ProfileError(problems)
     by_stem = in_seat_axes(by_stem, conditioning, label)
     flies_attitude = not {"arm", "p"} & set(by_stem)
     if flies_attitude:
-        by_stem = rows_with_attitude(by_stem, label, remarks)
+        kept = rows_with_attitude(by_stem, label, remarks)
+        by_stem = {stem: column[kept] for stem, column in by_stem.items()}
     by_stem = resampled(by_stem, conditioning, label, remarks)
     if flies_attitude:
         return flown_attitude(by_stem, remarks)
@@ -153,6 +157,10 @@ def _choose(
             found.append(_Column(stem, name, in_file, unit))
         elif name not in IGNORED and (name in columns or not columns):
             problems.append(Problem(where, _unknown(name, stem)))
+    by_user = {column.stem for column in found if column.name in columns}
+    if by_user & {*QUATERNION, *EULER} and not by_user & set(_RATES):
+        # who names an attitude, and no rates, means the attitude
+        found = [column for column in found if column.stem not in _RATES]
     _check_complete(found, names.values(), where, problems)
     kept = _kept({column.stem for column in found}, euler=euler)
     return [column for column in found if column.stem in kept]
@@ -176,9 +184,7 @@ def _renamed(header: Header, columns: Mapping[str, str], problems: list[Problem]
     names = {name: name for name in header.names}
     for name, in_file in columns.items():
         where = f"{header.label}: column {plain(name)}={plain(in_file)}"
-        if not in_file and name in names:
-            del names[name]  # left out by name
-        elif in_file not in names:
+        if in_file not in names:
             hint = did_you_mean(in_file, header.names) or f"; there are {_some(header.names)}"
             problems.append(Problem(where, f"the file has no column {plain(in_file)}{hint}"))
         elif list(columns.values()).count(in_file) > 1:

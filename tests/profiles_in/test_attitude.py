@@ -120,8 +120,7 @@ def test_where_rates_are_recorded_the_attitude_is_only_compared_with() -> None:
     profile = load(text)
     np.testing.assert_array_equal(profile.command.middle, [[0, 0, 0]])
     assert make_desired(profile).recorded_attitude_error == pytest.approx(2 * np.arcsin(0.28))
-    left_out = {"p_rad_s": "", "q_rad_s": "", "r_rad_s": ""}
-    alone = load(text, columns=left_out)
+    alone = load(text, columns={"q0": "q0"})
     np.testing.assert_allclose(alone.command.middle, [[2 * np.arcsin(0.28), 0, 0]], atol=1e-9)
 
 
@@ -143,6 +142,13 @@ def test_rows_without_an_attitude_are_left_out_and_counted() -> None:
     assert profile.remarks == ("1 of 3 rows have no attitude and were left out",)
     lines = problems_of(rows((0, 1, 0, 0, 0), (1, "", "", "", "")))
     assert lines == ["<stdin>: has an attitude in 1 of 2 rows, two are needed"]
+
+
+def test_a_row_that_was_trimmed_away_may_hold_anything() -> None:
+    text = rows((0, 0.1, 0, 0, 0), (1, 1, 0, 0, 0), (2, 0.8, 0.6, 0, 0), (3, 0.7, 0, 0, 0))
+    assert "<stdin>:2: " in problems_of(text)[0]
+    assert "<stdin>:5: " in problems_of(text, "trim.from_s=1")[0]
+    np.testing.assert_array_equal(load(text, "trim={from_s: 1, to_s: 2}").t, [1, 2])
 
 
 def test_a_turn_that_may_have_gone_either_way_is_refused() -> None:
