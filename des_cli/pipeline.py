@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond, respond_as_asked
+from des_cli.kinematics.smoothing import smooth_command
 from des_cli.metrics import Measured, measure
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
@@ -82,7 +84,7 @@ def reduce_profile(
         baselines=compare(found.problem, modified, chain_of(profile.machine, found.seat)),
     )
     metrics = measure(measured)
-    metrics["notices"] = find_notices(asked, metrics)
+    metrics["notices"] = find_notices(profile, asked, metrics)
     on_stage("verification")
     return Run(
         profile=profile,
@@ -114,7 +116,11 @@ def _with_leads(profile: Profile, found: Found) -> tuple[Found, Motion]:
 
 def _conditioned(profile: Profile, asked: DesiredMotion) -> Motion:
     """Return what the reduction begins from: the record, smoothed where the profile says so."""
-    return asked.motion
+    cutoff_hz = profile.smooth_cutoff_hz
+    if math.isinf(cutoff_hz):
+        return asked.motion
+    smooth = smooth_command(profile.t, profile.command, cutoff_hz)
+    return make_desired(replace(profile, command=smooth)).motion
 
 
 def _checks(

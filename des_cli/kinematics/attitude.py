@@ -58,6 +58,14 @@ def rotation_of_quaternion(quaternion: Floats) -> Floats:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
+def quaternion_product(one: Floats, other: Floats) -> Floats:
+    """Return the quaternions (w, x, y, z) of turns by ``other``, then by ``one``, (..., 4)."""
+    w, v = one[..., :1], one[..., 1:]
+    u, z = other[..., :1], other[..., 1:]
+    scalar = w * u - np.sum(v * z, axis=-1, keepdims=True)
+    return np.concatenate([scalar, w * z + u * v + np.cross(v, z)], axis=-1)
+
+
 def geodesic_angle(one: Floats, other: Floats) -> Floats:
     """Return the angle of the rotation between attitudes (..., 3, 3), (...) [rad].
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
@@ -180,6 +181,11 @@ class Profile:
     reduction : Reduction
     sha256 : str
         Digest of the bytes that the profile was read from, with its overrides.
+    smooth_cutoff_hz : float
+        What the record is smoothed with before it is reduced; the record stays
+        the reference [Hz]. Infinite where it is not smoothed.
+    remarks : tuple of str
+        What reading changed of the file, a sentence each.
     """
 
     name: str
@@ -190,6 +196,8 @@ class Profile:
     initial_angle: Floats = field(default_factory=lambda: np.zeros(3))
     reduction: Reduction = field(default_factory=Reduction)
     sha256: str = ""
+    smooth_cutoff_hz: float = math.inf
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         freeze(self, "t", (None,))

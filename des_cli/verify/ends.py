@@ -61,9 +61,10 @@ def check_ends(claim: Claim) -> list[Check]:
     alone.
     """
     ends, modified = claim.reduction.ends, claim.modified
-    target = (claim.target or claim.asked) if claim.posed is None else claim.desired
+    begins = claim.target or claim.asked
+    target = begins if claim.posed is None else claim.desired
     kept = [f"{joint}_start" not in claim.reduction.optimise for joint in JOINTS]
-    start = (modified.angle - claim.asked.angle)[0, kept]
+    start = (modified.angle - begins.angle)[0, kept]
     checks = [_same("start.angle", "change of the angles at the start [rad]", start)]
     if claim.reduction.algorithm == "report-sweep":
         return checks

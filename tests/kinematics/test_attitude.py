@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from des_cli.kinematics.attitude import (
     geodesic_angle,
     integrate_attitude,
+    quaternion_product,
     rotation,
     rotation_of_quaternion,
     rotation_vector,
@@ -116,3 +117,12 @@ def test_a_rotation_vector_is_scipys_at_every_angle():
     np.testing.assert_allclose(
         one.as_matrix() @ rotation(found), other.as_matrix(), rtol=0.0, atol=1e-14
     )
+
+
+def test_the_product_of_quaternions_is_scipy_s():
+    vectors = np.random.default_rng(5).normal(size=(2, 6, 3))
+    one, other = (Rotation.from_rotvec(each) for each in vectors)
+    w_first = [3, 0, 1, 2]
+    product = quaternion_product(one.as_quat()[:, w_first], other.as_quat()[:, w_first])
+    found = Rotation.from_quat(product[:, [1, 2, 3, 0]])
+    np.testing.assert_allclose(found.as_matrix(), (one * other).as_matrix(), atol=1e-14)
