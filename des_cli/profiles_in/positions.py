@@ -85,37 +85,3 @@ def _weighted_median(values: Floats, weights: Floats) -> Floats:
 def _variation(step: Floats, rate: Floats) -> Floats:
     """Return the total variation of the acceleration of rates at samples, (k,)."""
     return np.sum(np.abs(np.diff(np.diff(rate, axis=0) / step, axis=0)), axis=0)
-
-
-def middles_of_samples(t: Floats, value: Floats) -> Floats:
-    """Interpolate values in the middle of every interval.
-
-    By the cubic through the two samples on either side; in the first and last
-    interval by the cubic through the nearest four (a parabola of three
-    samples, a line of two). Fourth order on smooth data, on any grid.
-
-    Parameters
-    ----------
-    t : (n,) array
-        Increasing times, n >= 2 [s].
-    value : (n, k) array
-
-    Returns
-    -------
-    (n - 1, k) array
-    """
-    n = len(t)
-    width = min(4, n)
-    first = np.clip(np.arange(n - 1) - 1, 0, n - width)
-    nodes = first[:, None] + np.arange(width)
-    middle = 0.5 * (t[:-1] + t[1:])
-    # Times relative to the middle: late starts must not cost digits.
-    x = t[nodes] - middle[:, None]
-    result = np.zeros((n - 1, value.shape[1]))
-    for j in range(width):
-        weight = np.ones(n - 1)
-        for k in range(width):
-            if k != j:
-                weight *= x[:, k] / (x[:, k] - x[:, j])
-        result += weight[:, None] * value[nodes[:, j]]
-    return result

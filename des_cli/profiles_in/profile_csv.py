@@ -11,7 +11,8 @@ from des_cli.errors import Problem, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, JointCommands
 from des_cli.profiles_in.csv_table import Header, read_columns, split_header
-from des_cli.profiles_in.positions import middles_of_samples, rates_of_positions
+from des_cli.profiles_in.interpolant import body_rates_of_samples
+from des_cli.profiles_in.positions import rates_of_positions
 from des_cli.profiles_in.sampling import MAX_MAGNITUDE
 from des_cli.profiles_in.wording import did_you_mean, one_of, plain
 from des_cli.units import Unit, split_unit, suffixes
@@ -109,7 +110,7 @@ def parse_samples(
         rate = rates_of_positions(t, position)
         return t, JointCommands(by_stem["arm"], position, rate[:-1], rate[1:])
     rates = np.column_stack([by_stem[stem] for stem in _RATES])
-    return t, BodyRates(rates[:-1], middles_of_samples(t, rates), rates[1:], quaternions)
+    return t, body_rates_of_samples(t, rates, quaternions)
 
 
 def _choose(header: Header, columns: Mapping[str, str], problems: list[Problem]) -> list[_Column]:
