@@ -70,7 +70,7 @@ def reduce_profile(
         baselines=compare(found.problem, modified, chain_of(profile.machine, found.seat)),
     )
     metrics = measure(measured)
-    metrics["notices"] = find_notices(asked, metrics)
+    metrics["notices"] = [*profile.remarks, *asked.remarks, *find_notices(asked, metrics)]
     return Run(
         profile=profile,
         asked=asked,

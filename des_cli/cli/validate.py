@@ -55,18 +55,22 @@ def validate(
     profile is rejected, 2 if its reduction asks for what excludes each other,
     1 if a file cannot be read.
     """
-    from des_cli.batch import load_job
+    from des_cli.batch import load_job, split_jobs
     from des_cli.reduction.consistency import require_consistent
 
     stdin = read_stdin(profiles)
     codes = set()
-    for source in profiles:
-        job = Job(
+    jobs = split_jobs(
+        Job(
             source,
             settings=(*settings, *reduction_settings(reduction)),
             columns=columns,
             stdin=stdin if source == STANDARD_STREAM else None,
         )
+        for source in profiles
+    )
+    for job in jobs:
+        source = job.source
         try:
             profile = load_job(job)
             require_consistent(profile.reduction, profile.name)
@@ -77,6 +81,8 @@ def validate(
             if form == "json":
                 write_data(json.dumps(_rejected(source, failure)) + "\n")
             continue
+        for remark in profile.remarks:
+            console.say(f"{source}: {remark}")
         facts = understood(source, profile)
         write_data((json.dumps(facts) if form == "json" else _line(facts)) + "\n")
     # Several kinds of failure have no code in common but that of a batch.
@@ -114,6 +120,7 @@ def understood(source: str, profile: Profile) -> dict[str, Any]:
             for joint, limit in zip(JOINTS, machine.limits, strict=True)
         },
         "occupant": occupant_mapping(machine.occupant) or None,
+        "remarks": list(profile.remarks),
         "sha256": profile.sha256,
     }
 

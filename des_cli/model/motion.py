@@ -101,6 +101,8 @@ class DesiredMotion:
     recorded_attitude_error : float, optional
         Largest geodesic angle between the attitude integrated from the rates
         and the recorded one, both relative to the first sample [rad].
+    remarks : tuple of str
+        Sentences on what was changed to make it.
     """
 
     motion: Motion
@@ -109,6 +111,7 @@ class DesiredMotion:
     residual: Floats
     attitude_error: float = 0.0
     recorded_attitude_error: float | None = None
+    remarks: tuple[str, ...] = ()
 
 
 def mean_of_sides(sides: Floats) -> Floats:

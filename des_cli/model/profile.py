@@ -36,12 +36,15 @@ class JointCommands:
     rate_start, rate_end : (n - 1, 2) array
         Fork and cab rates at both ends of every interval [rad/s]: exact
         derivatives of an expression, three-point estimates of a table.
+    arm_start : float, optional
+        The arm's angle at the first sample [rad], where it is given by its angle.
     """
 
     arm_rate: Floats
     position: Floats
     rate_start: Floats
     rate_end: Floats
+    arm_start: float | None = None
 
     def __post_init__(self) -> None:
         n = len(self.arm_rate)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from des_cli.model.arrays import Floats
+from des_cli.model.profile import JointCommands
 
 LEAST_SAMPLES = 4
 """Samples up to which a piecewise parabola is not determined by its smoothness."""
@@ -13,6 +14,29 @@ ROUGHEST = 4.0
 """Total variation of the acceleration, relative to the three-point formula's, up to which
 positions count as those of a piecewise parabola. Noise, and a step of the rate, leave a
 sawtooth in its rates that is far rougher."""
+
+
+def joint_commands_of_samples(
+    t: Floats, arm: Floats, position: Floats, *, arm_by_angle: bool = False
+) -> JointCommands:
+    """Make commands of recorded joints.
+
+    Parameters
+    ----------
+    t : (n,) array
+        Increasing times, n >= 2 [s].
+    arm : (n,) array
+        The arm's rate [rad/s], or its angle [rad].
+    position : (n, 2) array
+        Fork and cab angles [rad].
+    arm_by_angle : bool
+        Whether the arm is given by its angle.
+    """
+    rate = rates_of_positions(t, position)
+    if not arm_by_angle:
+        return JointCommands(arm, position, rate[:-1], rate[1:])
+    arm_rate = rates_of_positions(t, arm[:, None])[:, 0]
+    return JointCommands(arm_rate, position, rate[:-1], rate[1:], arm_start=float(arm[0]))
 
 
 def rates_of_positions(t: Floats, position: Floats) -> Floats:

@@ -10,9 +10,11 @@ import numpy as np
 from des_cli.errors import Problem, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, JointCommands
+from des_cli.profiles_in.angles import unwrap
 from des_cli.profiles_in.csv_table import Header, read_columns, split_header
+from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
 from des_cli.profiles_in.interpolant import body_rates_of_samples
-from des_cli.profiles_in.positions import rates_of_positions
+from des_cli.profiles_in.positions import joint_commands_of_samples
 from des_cli.profiles_in.sampling import MAX_MAGNITUDE
 from des_cli.profiles_in.wording import did_you_mean, one_of, plain
 from des_cli.units import Unit, split_unit, suffixes
@@ -27,6 +29,9 @@ QUANTITIES: Mapping[str, str] = {
     "r": "rate",
 }
 """What each column measures."""
+
+ALSO: Mapping[str, str] = {"arm": "angle"}
+"""What it may measure instead."""
 
 _JOINTS = ("arm", "fork", "cab")
 _RATES = ("p", "q", "r")
@@ -62,7 +67,11 @@ class _Column:
 
 
 def parse_samples(
-    text: str, label: str, columns: Mapping[str, str]
+    text: str,
+    label: str,
+    columns: Mapping[str, str],
+    gaps: GapHandling | None = None,
+    remarks: list[str] | None = None,
 ) -> tuple[Floats, JointCommands | BodyRates]:
     """Read joint commands or body rates from the text of a CSV file.
 
@@ -75,6 +84,10 @@ def parse_samples(
         Name with its unit to the name in the file, for columns that the file
         names otherwise; with any of these, columns that mean nothing to the
         tool are ignored.
+    gaps : GapHandling, optional
+        What is done where samples are missing.
+    remarks : list of str, optional
+        Takes what was changed of the record, a sentence each.
 
     Returns
     -------
@@ -89,6 +102,10 @@ def parse_samples(
     """
     header = split_header(text, label)
     problems: list[Problem] = []
+
+    def line(row: int) -> int:
+        return header.lines + row + 1
+
     chosen = _choose(header, columns, problems)
     if problems:
         raise ProfileError(problems)
@@ -102,13 +119,28 @@ def parse_samples(
     _check_times(header, time, values[:, chosen.index(time)], problems)
     _check_magnitudes(header, chosen, by_stem, problems)
     quaternions = _attitude(header, by_stem, problems) if attitude else None
+    if not problems:
+        problems += find_short_steps(by_stem["t"], label, line)
+    said: list[str] = []
+    for column in chosen:
+        if column.stem in _JOINTS and column.unit and column.unit.quantity == "angle":
+            by_stem[column.stem] = _unwrapped(column, by_stem, label, line, said, problems)
     if problems:
         raise ProfileError(problems)
+    rows = select_rows(by_stem["t"], label, line, gaps or GapHandling(), said)
+    if remarks is not None:
+        remarks += said
+    by_stem = {stem: values[rows] for stem, values in by_stem.items()}
+    quaternions = None if quaternions is None else quaternions[rows]
     t = by_stem["t"]
     if "arm" in by_stem:
-        position = np.column_stack([by_stem["fork"], by_stem["cab"]])
-        rate = rates_of_positions(t, position)
-        return t, JointCommands(by_stem["arm"], position, rate[:-1], rate[1:])
+        arm = next(column for column in chosen if column.stem == "arm")
+        return t, joint_commands_of_samples(
+            t,
+            by_stem["arm"],
+            np.column_stack([by_stem["fork"], by_stem["cab"]]),
+            arm_by_angle=arm.unit is not None and arm.unit.quantity == "angle",
+        )
     rates = np.column_stack([by_stem[stem] for stem in _RATES])
     return t, body_rates_of_samples(t, rates, quaternions)
 
@@ -122,7 +154,7 @@ def _choose(header: Header, columns: Mapping[str, str], problems: list[Problem])
         stem, unit = split_unit(name)
         if name in QUATERNION:
             found.append(_Column(name, name, in_file))
-        elif unit is not None and QUANTITIES.get(stem) == unit.quantity:
+        elif unit is not None and unit.quantity in (QUANTITIES.get(stem), ALSO.get(stem)):
             found.append(_Column(stem, name, in_file, unit))
         elif name not in IGNORED and (name in columns or not columns):
             problems.append(Problem(where, _unknown(name, stem)))
@@ -209,6 +241,41 @@ def _check_times(header: Header, column: _Column, times: Floats, problems: list[
         )
     if len(late) > 20:
         problems.append(Problem(header.label, f"… and {len(late) - 20} more times like these"))
+
+
+def _unwrapped(
+    column: _Column,
+    by_stem: Mapping[str, Floats],
+    label: str,
+    line: Place,
+    remarks: list[str],
+    problems: list[Problem],
+) -> Floats:
+    """Return a joint's angle without jumps by full turns, saying what was done."""
+    assert column.unit is not None, "an angle has a unit"
+    angle, unit = by_stem[column.stem], column.unit
+    found = unwrap(angle)
+    name = plain(column.in_file)
+
+    def jump(row: int) -> str:
+        before, after = angle[row] / unit.to_si, angle[row + 1] / unit.to_si
+        return f"from {before:.6g} to {after:.6g} {unit.suffix}"
+
+    if found.unclear:
+        row = found.unclear[0]
+        what = (
+            f"{name}: jumps {jump(row)} within a row ({len(found.unclear)} such jumps), which no "
+            "joint follows and which is no full turn: give the angle without jumps, or more rows"
+        )
+        problems.append(Problem(f"{label}:{line(row + 1)}", what))
+    elif found.jumps:
+        row = found.jumps[0]
+        others = f" and {len(found.jumps) - 1} more" if len(found.jumps) > 1 else ""
+        remarks.append(
+            f"line {line(row + 1)}: {name} jumps {jump(row)}{others}; "
+            "the angle wraps there, and full turns were added so that it goes on"
+        )
+    return found.angle
 
 
 def _check_magnitudes(

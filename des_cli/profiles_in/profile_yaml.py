@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -17,6 +17,7 @@ from des_cli.model.machine import JOINTS, Machine, Seat
 from des_cli.model.profile import BodyRates, JointCommands, Profile
 from des_cli.profiles_in.commands import check_commands, read_commands, read_time
 from des_cli.profiles_in.findings import Findings
+from des_cli.profiles_in.gaps import GapHandling
 from des_cli.profiles_in.machine_yaml import (
     build_machine,
     is_machine_file,
@@ -51,11 +52,17 @@ class Reading:
         Where files stand that the profile refers to.
     digest : hashlib hash
         Takes the bytes of the profile and of every file that it refers to.
+    gaps : GapHandling
+        What is done where samples are missing.
+    remarks : list of str
+        What reading changed of what was recorded, a sentence each.
     """
 
     label: str
     folder: Path
     digest: Any
+    gaps: GapHandling = field(default_factory=GapHandling)
+    remarks: list[str] = field(default_factory=list)
 
     def referred(self, name: str, place: str) -> tuple[str, str]:
         """Return label and text of a file that the profile refers to.
@@ -148,6 +155,7 @@ def finish(
         machine = read_machine(document, reading, findings)
     except DesError as error:
         unread = error
+    reading.gaps.policy = document.gap
     try:
         commands = commands_of(document, reading, findings)
     except DesError as error:
@@ -161,8 +169,12 @@ def finish(
         raise unread
     assert machine is not None, "otherwise something was found"
     assert commands is not None, "otherwise something was found"
+    if reading.gaps.parts > 1:
+        name = f"{document.name or name}-{reading.gaps.part}"
+    else:
+        name = document.name or name
     return Profile(
-        name=document.name or name,
+        name=name,
         t=commands[0],
         command=commands[1],
         machine=machine,
@@ -170,6 +182,7 @@ def finish(
         initial_angle=initial,
         reduction=reduction,
         sha256=reading.digest.hexdigest(),
+        remarks=tuple(reading.remarks),
     )
 
 
@@ -196,11 +209,14 @@ def read_initial(section: Any, commands: Commands | None, findings: Findings) ->
     """Return the joint angles at the first sample, (3,) [rad]."""
     given = [section.si(joint) if section is not None else 0.0 for joint in JOINTS]
     if commands is not None and isinstance(commands[1], JointCommands):
-        for joint in JOINTS[1:]:
+        arm_start = commands[1].arm_start
+        for joint in JOINTS[1:] if arm_start is None else JOINTS:
             key = section.given_key(joint) if section is not None else None
             if key:
                 words = f"the {joint} starts where its position command does; leave this out"
                 findings.add(["initial", key], words, of_key=True)
+        if arm_start is not None:
+            given[0] = arm_start
         given[1:] = commands[1].position[0].tolist()
     return np.array(given)
 
@@ -226,6 +242,8 @@ def document_commands(
             if sections["samples"] is None
             else _sampled(sections["samples"], reading, findings)
         )
+    if "gap" in present and given:
+        findings.add(["gap"], f"is for samples; {given[0]} have none: leave this out", of_key=True)
     if "time" not in present:
         findings.add((), "time is missing: give time: {start_s: …, stop_s: …, step_s: …}")
     time = None if sections["time"] is None else read_time(sections["time"], findings)
@@ -243,4 +261,4 @@ def document_commands(
 
 def _sampled(section: Any, reading: Reading, findings: Findings) -> Commands:
     label, text = reading.referred(section.file, findings.root.place_of(["samples", "file"]))
-    return parse_samples(text, label, section.columns)
+    return parse_samples(text, label, section.columns, reading.gaps, reading.remarks)
