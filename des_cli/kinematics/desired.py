@@ -15,13 +15,13 @@ from des_cli.kinematics.attitude import (
     rotation_of_quaternion,
 )
 from des_cli.kinematics.chain import Chain, chain_of, seat_rotation
-from des_cli.kinematics.joint_integration import integrate_joints
 from des_cli.kinematics.orientation import (
     body_jacobian,
     damped_inverse_rates,
     smallest_singular_value,
 )
 from des_cli.kinematics.rate_field import RateField
+from des_cli.kinematics.refinement import resolve
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.motion import DesiredMotion, Motion, mean_of_sides
 from des_cli.model.profile import BodyRates, JointCommands, Profile
@@ -39,7 +39,8 @@ def make_desired(profile: Profile) -> DesiredMotion:
     DesiredMotion
         For joint commands the commands themselves, with the arm's angle
         integrated from its velocity by the trapezoidal rule, as a velocity that
-        is linear between samples moves it.
+        is linear between samples moves it. For body rates on more rows than the
+        profile has, where these are too far apart to hold the turning.
     """
     chain = chain_of(profile.machine, profile.seat)
     if isinstance(profile.command, JointCommands):
@@ -76,21 +77,22 @@ def _from_joints(chain: Chain, profile: Profile, command: JointCommands) -> Desi
 
 
 def _from_body_rates(chain: Chain, profile: Profile, command: BodyRates) -> DesiredMotion:
-    step = np.diff(profile.t)
     field = RateField.of(chain, profile.machine)
-    angle = integrate_joints(field, step, command, profile.initial_angle)
+    demand = resolve(field, profile.t, command, profile.initial_angle)
+    command, angle = demand.command, demand.angle
     sides = np.stack([angle[:-1], angle[1:]], axis=1)
     wanted = np.stack([command.start, command.end], axis=1)
     rate, held, residual = field.rates(body_jacobian(chain, sides), wanted)
     flown = seat_rotation(chain, angle)
-    wished = flown[0] @ integrate_attitude(step, command)
+    wished = flown[0] @ integrate_attitude(demand.step, command)
     return DesiredMotion(
-        motion=Motion(profile.t, angle, rate[:, 0], rate[:, 1]),
+        motion=Motion(demand.t, angle, rate[:, 0], rate[:, 1]),
         singular_value=smallest_singular_value(body_jacobian(chain, angle)),
         damped=_at_samples(held),
         residual=mean_of_sides(residual),
         attitude_error=float(np.max(geodesic_angle(flown, wished))),
         recorded_attitude_error=_against_record(command, wished),
+        remarks=(demand.remark,) if demand.remark else (),
     )
 
 
