@@ -12,7 +12,6 @@ import numpy as np
 from des_cli.kinematics.chain import Chain
 from des_cli.kinematics.orientation import (
     SINGULAR_VALUE_THRESHOLD,
-    body_jacobian,
     damped_inverse_rates,
 )
 from des_cli.model.arrays import Flags, Floats
@@ -101,7 +100,7 @@ class RateField:
             most = self._limits
             if abs(arm) <= most[0] and abs(fork_rate) <= most[1] and abs(cab_rate) <= most[2]:
                 return (arm, fork_rate, cab_rate), size
-        jacobian = body_jacobian(self.chain, np.array([0.0, fork, cab]))
+        jacobian = np.array([[a, d, g], [b, e, h], [c, f, i]])
         arm, fork_rate, cab_rate = self.rates(jacobian, np.array(wanted))[0].tolist()
         return (arm, fork_rate, cab_rate), size
 
