@@ -117,8 +117,34 @@ def load_job(job: Job) -> Profile:
     from des_cli.profiles_in.load import load_profile
 
     return load_profile(
-        job.source, settings=job.settings, columns=dict(job.columns) or None, stdin=job.stdin
+        job.source,
+        settings=job.settings,
+        columns=dict(job.columns) or None,
+        stdin=job.stdin,
+        part=job.part,
     )
+
+
+def split_jobs(jobs: Iterable[Job]) -> list[Job]:
+    """Make a job of every stretch of the records that are split at their gaps.
+
+    A profile that cannot be loaded stays one job, which says what is wrong with it.
+    """
+    from des_cli.profiles_in.load import count_parts
+
+    found: list[Job] = []
+    for job in jobs:
+        try:
+            parts = count_parts(
+                job.source, settings=job.settings, columns=dict(job.columns), stdin=job.stdin
+            )
+        except (DesError, OSError):
+            parts = 1
+        if parts == 1:
+            found.append(job)
+        else:
+            found += [replace(job, part=k + 1, out_is_parent=True) for k in range(parts)]
+    return found
 
 
 def require_distinct_names(jobs: Iterable[Job]) -> None:

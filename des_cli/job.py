@@ -33,6 +33,8 @@ class Job:
         Names of a CSV's columns: ours to the file's.
     stdin : bytes, optional
         What ``-`` stands for.
+    part : int, optional
+        Which stretch between the gaps of a record that is split.
     out : str
         The run folder, the file of the command table, or ``-`` for a table
         that comes back in the result.
@@ -52,6 +54,7 @@ class Job:
     settings: tuple[str, ...] = ()
     columns: Mapping[str, str] = field(default_factory=dict)
     stdin: bytes | None = None
+    part: int | None = None
     out: str = "runs"
     out_is_parent: bool = True
     table_format: TableFormat | None = None

@@ -59,6 +59,7 @@ def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]
     """
     found = [
         *profile.remarks,
+        *asked.remarks,
         suggest_smoothing(profile, asked),
         _worse(metrics),
         _felt(metrics),

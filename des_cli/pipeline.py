@@ -119,8 +119,14 @@ def _conditioned(profile: Profile, asked: DesiredMotion) -> Motion:
     cutoff_hz = profile.smooth_cutoff_hz
     if math.isinf(cutoff_hz):
         return asked.motion
-    smooth = smooth_command(profile.t, profile.command, cutoff_hz)
-    return make_desired(replace(profile, command=smooth)).motion
+    record = _on_rows(profile, asked)
+    smooth = smooth_command(record.t, record.command, cutoff_hz)
+    return make_desired(replace(record, command=smooth), divide=False).motion
+
+
+def _on_rows(profile: Profile, asked: DesiredMotion) -> Profile:
+    """Return the profile on the rows of the motion that it asks for."""
+    return replace(profile, t=asked.motion.t, command=asked.rates or profile.command)
 
 
 def _checks(
@@ -129,7 +135,7 @@ def _checks(
     if not found.solution.usable:
         return ()
     claim = Claim(
-        profile=profile,
+        profile=_on_rows(profile, asked),
         asked=asked.motion,
         desired=found.desired if found.posed is None else found.posed.desired,
         seat=found.seat,

@@ -67,13 +67,16 @@ def profile_argument(command: F) -> F:
 
 
 def setting_options(command: F) -> F:
-    """Add ``--set``, ``--column`` and what conditions a record: how a profile is read."""
+    """Add ``--set``, ``--column``, ``--gap`` and what conditions a record: how a profile is read.
+
+    ``--gap`` comes to the command as a setting; its own value is not passed.
+    """
     settings = click.option(
         "--set",
         "settings",
         metavar="KEY=VALUE",
         multiple=True,
-        callback=_require_assignments,
+        callback=_with_gap,
         help="Override a key of the profile by its path, such as reduction.r2=0.2; repeatable.",
     )
     columns = click.option(
@@ -84,7 +87,16 @@ def setting_options(command: F) -> F:
         callback=_read_columns,
         help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
     )
-    return settings(columns(conditioning_options(command)))
+    gap = click.option(
+        "--gap",
+        type=click.Choice(["refuse", "bridge", "split"]),
+        is_eager=True,
+        expose_value=False,
+        callback=_keep_gap,
+        help="Where samples are missing: refuse, interpolate, or make a profile of each stretch.  "
+        "[default: bridge up to 0.5 s]",
+    )
+    return settings(columns(gap(conditioning_options(command))))
 
 
 def machine_option(command: F) -> F:
@@ -183,6 +195,7 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
     ("tolerance", "RAD_S2", "Largest Coriolis component that --method zero leaves."),
     ("iterations", click.IntRange(min=1), "Backward-forward sweeps of report-sweep."),
 )
+_GAP = "des_cli.gap"
 _REPEATABLE = ("budget", "optimise")
 _SECONDS = ("lead_in", "lead_out")
 
@@ -334,13 +347,19 @@ def _require_name(
     return value
 
 
-def _require_assignments(
+def _keep_gap(context: click.Context, parameter: click.Parameter, value: str | None) -> None:
+    context.meta[_GAP] = value  # eager: it is there before the settings are read
+
+
+def _with_gap(
     context: click.Context, parameter: click.Parameter, values: tuple[str, ...]
 ) -> tuple[str, ...]:
+    """Return the settings, with what ``--gap`` says as the last one."""
     for value in values:
         if not value.partition("=")[0].strip() or "=" not in value:
             raise click.BadParameter(f"{value!r} is not KEY=VALUE, such as reduction.r2=0.2.")
-    return values
+    gap = context.meta.get(_GAP)
+    return values if gap is None else (*values, f"gap={gap}")
 
 
 def _read_columns(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, NoReturn, cast
 
 import click
 
@@ -114,13 +114,26 @@ def reduce(
         )
         for source in profiles
     ]
-    return _run(console, batch, min(jobs, len(batch)) if jobs else jobs, keep_going)
+    return _run(console, _with_parts(batch), jobs, keep_going)
 
 
-def _run(console: Console, batch: list[Job], workers: int, keep_going: bool) -> ExitCode:
+def _with_parts(batch: list[Job]) -> list[Job]:
+    """Return a job for each stretch of a record that is split at its gaps."""
+    from des_cli.batch import split_jobs
+    from des_cli.pool import single_blas_thread
+
+    with single_blas_thread():  # numpy may be imported here
+        parts = split_jobs(batch)
+    if len(parts) > 1 and parts[0].table_format is not None:
+        _refuse_one_table()
+    return parts
+
+
+def _run(console: Console, batch: list[Job], jobs: int, keep_going: bool) -> ExitCode:
     from des_cli.batch import require_distinct_names, run_jobs
     from des_cli.pool import local_executor
 
+    workers = min(jobs, len(batch)) if jobs else jobs
     alone = len(batch) == 1
     results = []
     with (
@@ -152,6 +165,12 @@ def _run(console: Console, batch: list[Job], workers: int, keep_going: bool) -> 
     return exit_code_of(results, len(batch))
 
 
+def _refuse_one_table() -> NoReturn:
+    raise click.UsageError(
+        "one command table cannot hold several profiles: name a folder with -o DIR."
+    )
+
+
 def _table_format(out: str | None, named: str | None, *, several: bool) -> TableFormat | None:
     """Return the format of the command table, or None where a run folder is meant."""
     if out is None:
@@ -170,9 +189,7 @@ def _table_format(out: str | None, named: str | None, *, several: bool) -> Table
     if not is_table:
         return None
     if several:
-        raise click.UsageError(
-            "one command table cannot hold several profiles: name a folder with -o DIR."
-        )
+        _refuse_one_table()
     if named is not None and suffix in TABLE_FORMATS and suffix != named:
         raise click.UsageError(f"--format {named} contradicts the suffix of {out}.")
     return cast(TableFormat, named or (suffix if suffix in TABLE_FORMATS else "csv"))

@@ -59,19 +59,23 @@ def validate(
     profile is rejected, 2 if its reduction asks for what excludes each other,
     1 if a file cannot be read.
     """
-    from des_cli.batch import load_job
+    from des_cli.batch import load_job, split_jobs
     from des_cli.reduction.consistency import require_consistent
 
     stdin = read_stdin(profiles)
     codes = set()
     with console.working(len(profiles)) as line:
-        for source in profiles:
-            job = Job(
+        jobs = split_jobs(
+            Job(
                 source,
                 settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
                 columns=columns,
                 stdin=stdin if source == STANDARD_STREAM else None,
             )
+            for source in profiles
+        )
+        for job in jobs:
+            source = job.source
             line.stage(f"reading {source}")
             try:
                 profile = load_job(job)
@@ -83,6 +87,8 @@ def validate(
                 if form == "json":
                     _write(console, json.dumps(_rejected(source, failure)))
             else:
+                for remark in profile.remarks:
+                    console.say(f"{source}: {remark}")
                 facts = understood(source, profile)
                 _write(console, json.dumps(facts) if form == "json" else _line(facts))
             line.advance()
@@ -126,6 +132,7 @@ def understood(source: str, profile: Profile) -> dict[str, Any]:
             for joint, limit in zip(JOINTS, machine.limits, strict=True)
         },
         "occupant": occupant_mapping(machine.occupant) or None,
+        "remarks": list(profile.remarks),
         "sha256": profile.sha256,
     }
 

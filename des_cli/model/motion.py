@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from des_cli.model.arrays import Flags, Floats, freeze
+
+if TYPE_CHECKING:
+    from des_cli.model.profile import BodyRates
 
 
 @dataclass(frozen=True)
@@ -132,6 +136,10 @@ class DesiredMotion:
         and the recorded one, both relative to the first sample [rad].
     shortfall : Shortfall, optional
         What is asked for and not made; None where the joints make all of it.
+    rates : BodyRates, optional
+        Where body rates are asked for: these, on the rows of the motion.
+    remarks : tuple of str
+        Sentences on what was changed to make it.
     """
 
     motion: Motion
@@ -141,6 +149,8 @@ class DesiredMotion:
     attitude_error: float = 0.0
     recorded_attitude_error: float | None = None
     shortfall: Shortfall | None = None
+    rates: BodyRates | None = None
+    remarks: tuple[str, ...] = ()
 
 
 def mean_of_sides(sides: Floats) -> Floats:

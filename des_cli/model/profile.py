@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -36,12 +37,15 @@ class JointCommands:
     rate_start, rate_end : (n - 1, 2) array
         Fork and cab rates at both ends of every interval [rad/s]: exact
         derivatives of an expression, three-point estimates of a table.
+    arm_start : float, optional
+        The arm's angle at the first sample [rad], where it is given by its angle.
     """
 
     arm_rate: Floats
     position: Floats
     rate_start: Floats
     rate_end: Floats
+    arm_start: float | None = None
 
     def __post_init__(self) -> None:
         n = len(self.arm_rate)
@@ -59,17 +63,21 @@ class BodyRates:
     ----------
     start, middle, end : (n - 1, 3) array
         At the start, the middle and the end of every interval: exact values of
-        an expression, interpolated ones of a table. The rates between them are
-        the parabola through the three.
+        an expression, interpolated ones of a table.
     attitude : (n, 4) array, optional
         Recorded attitude quaternion (w, x, y, z), body to inertial, to compare
         the integrated attitude with; NaN rows where none was recorded.
+    skew : (n - 1, 3) array, optional
+        What the rates between the three have beside their parabola: at the part s
+        of an interval ``skew s (1 - s) (1 - 2 s)``, which makes any cubic of it.
+        Zero if not given.
     """
 
     start: Floats
     middle: Floats
     end: Floats
     attitude: Floats | None = None
+    skew: Floats | None = None
 
     def __post_init__(self) -> None:
         n = len(self.start)
@@ -77,6 +85,28 @@ class BodyRates:
             freeze(self, name, (n, 3))
         if self.attitude is not None:
             freeze(self, "attitude", (n + 1, 4))
+        if self.skew is not None:
+            freeze(self, "skew", (n, 3))
+
+    @cached_property
+    def powers(self) -> Floats:
+        """Coefficients of 1, s, s^2 and s^3 on each interval, (n - 1, 4, 3) [rad/s]."""
+        start, middle, end = self.start, self.middle, self.end
+        skew = np.zeros_like(start) if self.skew is None else self.skew
+        return np.stack(
+            [
+                start,
+                4.0 * middle - 3.0 * start - end + skew,
+                2.0 * (start + end) - 4.0 * middle - 3.0 * skew,
+                2.0 * skew,
+            ],
+            axis=1,
+        )
+
+    def at(self, s: float) -> Floats:
+        """Return the rates at a part s of every interval, (n - 1, 3) [rad/s]."""
+        constant, linear, square, cube = np.moveaxis(self.powers, 1, 0)
+        return np.asarray(constant + s * (linear + s * (square + s * cube)))
 
 
 FELT_BUDGETS = (

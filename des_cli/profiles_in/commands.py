@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from des_cli.model.arrays import Floats
+from des_cli.model.motion import mean_of_sides
 from des_cli.model.profile import BodyRates, JointCommands
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.sampling import (
@@ -194,12 +195,13 @@ def _sample_joints(
     t: Floats,
     findings: Findings,
 ) -> JointCommands | None:
+    angles = [stem for stem in pieces if units[stem].quantity == "angle"]
     found = {
-        stem: _sides(stem, pieces, units, paths, t, findings, rates=stem != "arm")
+        stem: _sides(stem, pieces, units, paths, t, findings, rates=stem in angles)
         for stem in pieces
     }
     for stem, sides in found.items():
-        jump = first_jump(sides, t, _JUMP_TOLERANCE) if sides and stem != "arm" else None
+        jump = first_jump(sides, t, _JUMP_TOLERANCE) if sides and stem in angles else None
         if jump:
             at, before, after = (jump[0], *(value / units[stem].to_si for value in jump[1:]))
             unit = units[stem].suffix
@@ -211,12 +213,23 @@ def _sample_joints(
     arm, *both = (found.get(stem) for stem in ("arm", "fork", "cab"))
     if arm is None or not all(both) or findings.problems:
         return None
+    by_angle = "arm" in angles
     return JointCommands(
-        arm_rate=np.append(arm.start, arm.end[-1]),
+        arm_rate=_arm_rate_of_angle(arm) if by_angle else np.append(arm.start, arm.end[-1]),
         position=np.column_stack([np.append(each.start, each.end[-1]) for each in both if each]),
         rate_start=np.column_stack([each.rate_start for each in both if each]),
         rate_end=np.column_stack([each.rate_end for each in both if each]),
+        arm_start=float(arm.start[0]) if by_angle else None,
     )
+
+
+def _arm_rate_of_angle(arm: Sides) -> Floats:
+    """Return the rate of an arm that is given by its angle, at every sample.
+
+    A velocity command has one value a sample: where the rate steps the mean of both
+    sides, with which the arm has turned as far before and after it.
+    """
+    return mean_of_sides(np.stack([arm.rate_start, arm.rate_end], axis=1))
 
 
 def _piece_path(path: list[Step], pieces: tuple[Piece, ...], at: float) -> list[Step]:

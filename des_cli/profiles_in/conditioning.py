@@ -24,7 +24,7 @@ from des_cli.profiles_in.sampling import MAX_SAMPLES
 
 RATES = ("p", "q", "r")
 
-OF_SAMPLES = ("trim", "axes", "resample")
+OF_SAMPLES = ("gap", "trim", "axes", "resample")
 """Keys that only recorded samples have a use for."""
 
 _ROUNDING = 1e-9

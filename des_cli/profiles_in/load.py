@@ -12,6 +12,7 @@ from des_cli.errors import FileAccessError, Problem, ProfileError, UsageError
 from des_cli.model.profile import Profile
 from des_cli.profiles_in.builtin import builtin_profile, builtin_profiles
 from des_cli.profiles_in.findings import Findings, bounded
+from des_cli.profiles_in.gaps import GapHandling
 from des_cli.profiles_in.profile_csv import parse_samples
 from des_cli.profiles_in.profile_yaml import (
     Commands,
@@ -25,6 +26,7 @@ from des_cli.profiles_in.source import decode, label_of, read_source
 from des_cli.profiles_in.wording import did_you_mean
 
 STDIN_LABEL = "<stdin>"
+_SPLIT = "split"
 
 _YAML_LINE = re.compile(r"""---|%YAML|[{\[]|["']?[\w. -]+["']?\s*:(\s|$)|- """)
 
@@ -35,6 +37,7 @@ def load_profile(
     settings: Sequence[str] = (),
     columns: Mapping[str, str] | None = None,
     stdin: bytes | None = None,
+    part: int | None = None,
 ) -> Profile:
     """Read and check a profile.
 
@@ -51,6 +54,8 @@ def load_profile(
         the name that it has in the file (``{"t_s": "t"}``).
     stdin : bytes, optional
         What standard input held, where ``source`` is ``-``.
+    part : int, optional
+        With ``gap: split``: which stretch between gaps, counted from 1; see `count_parts`.
 
     Returns
     -------
@@ -63,14 +68,50 @@ def load_profile(
     FileAccessError
         If a file cannot be read.
     """
-    columns = dict(columns or {})
+    return _load(source, settings, dict(columns or {}), stdin, GapHandling(part=part))
+
+
+def count_parts(
+    source: str | Path,
+    *,
+    settings: Sequence[str] = (),
+    columns: Mapping[str, str] | None = None,
+    stdin: bytes | None = None,
+) -> int:
+    """Return how many profiles a source holds: with ``gap: split`` one a stretch between gaps.
+
+    Parameters
+    ----------
+    source, settings, columns, stdin
+        As of `load_profile`, whose errors this raises too, but only where there is
+        something to split.
+    """
+    path, label, data = _read(source, stdin)
+    asked = any(_SPLIT in setting for setting in settings)
+    # The word has to stand somewhere: a long table need not be read to know that.
+    if not asked and (_SPLIT.encode() not in data or not _is_yaml(path, decode(data, label))):
+        return 1
+    gaps = GapHandling(part=1)
+    _load(source, settings, dict(columns or {}), stdin, gaps)
+    return gaps.parts
+
+
+def _load(
+    source: str | Path,
+    settings: Sequence[str],
+    columns: dict[str, str],
+    stdin: bytes | None,
+    gaps: GapHandling,
+) -> Profile:
     path, label, data = _read(source, stdin)
     text = decode(data, label)
     folder = path.parent if path else Path()
     digest = hashlib.sha256(data)
     if settings or columns:
         digest.update(json.dumps([list(settings), sorted(columns.items())]).encode())
-    reading = Reading(label, folder, digest)
+    if gaps.part is not None:
+        digest.update(f"part {gaps.part}".encode())
+    reading = Reading(label, folder, digest, gaps=gaps)
     name = _safe_name(path.stem if path else "stdin")
     try:
         if _is_yaml(path, text):
@@ -130,7 +171,9 @@ def _load_csv(
     columns: Mapping[str, str],
 ) -> Profile:
     def commands(document: ProfileSettings, reading: Reading, findings: Findings) -> Commands:
-        return parse_samples(text, reading.label, columns, reading.conditioning, reading.remarks)
+        return parse_samples(
+            text, reading.label, columns, reading.conditioning, reading.gaps, reading.remarks
+        )
 
     document, findings = parse_settings(settings, reading.label)
     return finish(document, commands, reading, name, findings)

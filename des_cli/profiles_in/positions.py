@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from des_cli.model.arrays import Floats
+from des_cli.model.profile import JointCommands
 
 LEAST_SAMPLES = 4
 """Samples up to which a piecewise parabola is not determined by its smoothness."""
@@ -13,6 +14,29 @@ ROUGHEST = 4.0
 """Total variation of the acceleration, relative to the three-point formula's, up to which
 positions count as those of a piecewise parabola. Noise, and a step of the rate, leave a
 sawtooth in its rates that is far rougher."""
+
+
+def joint_commands_of_samples(
+    t: Floats, arm: Floats, position: Floats, *, arm_by_angle: bool = False
+) -> JointCommands:
+    """Make commands of recorded joints.
+
+    Parameters
+    ----------
+    t : (n,) array
+        Increasing times, n >= 2 [s].
+    arm : (n,) array
+        The arm's rate [rad/s], or its angle [rad].
+    position : (n, 2) array
+        Fork and cab angles [rad].
+    arm_by_angle : bool
+        Whether the arm is given by its angle.
+    """
+    rate = rates_of_positions(t, position)
+    if not arm_by_angle:
+        return JointCommands(arm, position, rate[:-1], rate[1:])
+    arm_rate = rates_of_positions(t, arm[:, None])[:, 0]
+    return JointCommands(arm_rate, position, rate[:-1], rate[1:], arm_start=float(arm[0]))
 
 
 def rates_of_positions(t: Floats, position: Floats) -> Floats:
@@ -85,37 +109,3 @@ def _weighted_median(values: Floats, weights: Floats) -> Floats:
 def _variation(step: Floats, rate: Floats) -> Floats:
     """Return the total variation of the acceleration of rates at samples, (k,)."""
     return np.sum(np.abs(np.diff(np.diff(rate, axis=0) / step, axis=0)), axis=0)
-
-
-def middles_of_samples(t: Floats, value: Floats) -> Floats:
-    """Interpolate values in the middle of every interval.
-
-    By the cubic through the two samples on either side; in the first and last
-    interval by the cubic through the nearest four (a parabola of three
-    samples, a line of two). Fourth order on smooth data, on any grid.
-
-    Parameters
-    ----------
-    t : (n,) array
-        Increasing times, n >= 2 [s].
-    value : (n, k) array
-
-    Returns
-    -------
-    (n - 1, k) array
-    """
-    n = len(t)
-    width = min(4, n)
-    first = np.clip(np.arange(n - 1) - 1, 0, n - width)
-    nodes = first[:, None] + np.arange(width)
-    middle = 0.5 * (t[:-1] + t[1:])
-    # Times relative to the middle: late starts must not cost digits.
-    x = t[nodes] - middle[:, None]
-    result = np.zeros((n - 1, value.shape[1]))
-    for j in range(width):
-        weight = np.ones(n - 1)
-        for k in range(width):
-            if k != j:
-                weight *= x[:, k] / (x[:, k] - x[:, j])
-        result += weight[:, None] * value[nodes[:, j]]
-    return result

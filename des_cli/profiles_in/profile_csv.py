@@ -10,6 +10,7 @@ import numpy as np
 from des_cli.errors import Problem, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, JointCommands
+from des_cli.profiles_in.angles import unwrap
 from des_cli.profiles_in.attitude import (
     ALIASES,
     EULER,
@@ -20,7 +21,9 @@ from des_cli.profiles_in.attitude import (
 )
 from des_cli.profiles_in.conditioning import Conditioning, in_seat_axes, resampled, rows_inside
 from des_cli.profiles_in.csv_table import Header, read_columns, split_header
-from des_cli.profiles_in.positions import middles_of_samples, rates_of_positions
+from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
+from des_cli.profiles_in.interpolant import body_rates_of_samples
+from des_cli.profiles_in.positions import joint_commands_of_samples
 from des_cli.profiles_in.sampling import MAX_MAGNITUDE
 from des_cli.profiles_in.wording import did_you_mean, one_of, plain
 from des_cli.units import Unit, split_unit, suffixes
@@ -38,6 +41,9 @@ QUANTITIES: Mapping[str, str] = {
     "yaw": "angle",
 }
 """What each column measures."""
+
+ALSO: Mapping[str, str] = {"arm": "angle"}
+"""What it may measure instead."""
 
 _JOINTS = ("arm", "fork", "cab")
 _RATES = ("p", "q", "r")
@@ -71,6 +77,7 @@ def parse_samples(
     label: str,
     columns: Mapping[str, str],
     conditioning: Conditioning | None = None,
+    gaps: GapHandling | None = None,
     remarks: list[str] | None = None,
 ) -> tuple[Floats, JointCommands | BodyRates]:
     """Read joint commands, body rates or an attitude from the text of a CSV file.
@@ -86,8 +93,10 @@ def parse_samples(
         tool are ignored.
     conditioning : Conditioning, optional
         What is done to the rows.
+    gaps : GapHandling, optional
+        What is done where samples are missing.
     remarks : list of str, optional
-        Takes what was changed of the file, a sentence each.
+        Takes what was changed of the record, a sentence each.
 
     Returns
     -------
@@ -105,6 +114,10 @@ def parse_samples(
     remarks = [] if remarks is None else remarks
     header = split_header(text, label)
     problems: list[Problem] = []
+
+    def line(row: int) -> int:
+        return header.lines + int(rows[row]) + 1
+
     chosen = _choose(header, columns, problems, euler=conditioning.euler is not None)
     if problems:
         raise ProfileError(problems)
@@ -122,6 +135,11 @@ def parse_samples(
     rows = rows_inside(by_stem["t"], conditioning, label, remarks)
     by_stem = {stem: column[rows] for stem, column in by_stem.items()}
     by_stem = with_quaternions(by_stem, conditioning.euler, header, rows, problems)
+    problems += find_short_steps(by_stem["t"], label, line)
+    said: list[str] = []
+    for column in chosen:
+        if column.stem in _JOINTS and column.unit and column.unit.quantity == "angle":
+            by_stem[column.stem] = _unwrapped(column, by_stem, label, line, said, problems)
     if problems:
         raise ProfileError(problems)
     by_stem = in_seat_axes(by_stem, conditioning, label)
@@ -129,17 +147,25 @@ def parse_samples(
     if flies_attitude:
         kept = rows_with_attitude(by_stem, label, remarks)
         by_stem = {stem: column[kept] for stem, column in by_stem.items()}
+        rows = rows[kept]
+    stretch = select_rows(by_stem["t"], label, line, gaps or GapHandling(), said)
+    remarks += said
+    by_stem = {stem: column[stretch] for stem, column in by_stem.items()}
     by_stem = resampled(by_stem, conditioning, label, remarks)
     if flies_attitude:
         return flown_attitude(by_stem, remarks)
     t = by_stem["t"]
     if "arm" in by_stem:
-        position = np.column_stack([by_stem["fork"], by_stem["cab"]])
-        rate = rates_of_positions(t, position)
-        return t, JointCommands(by_stem["arm"], position, rate[:-1], rate[1:])
+        arm = next(column for column in chosen if column.stem == "arm")
+        return t, joint_commands_of_samples(
+            t,
+            by_stem["arm"],
+            np.column_stack([by_stem["fork"], by_stem["cab"]]),
+            arm_by_angle=arm.unit is not None and arm.unit.quantity == "angle",
+        )
     rates = np.column_stack([by_stem[stem] for stem in _RATES])
     recorded = np.column_stack([by_stem[q] for q in QUATERNION]) if "q0" in by_stem else None
-    return t, BodyRates(rates[:-1], middles_of_samples(t, rates), rates[1:], recorded)
+    return t, body_rates_of_samples(t, rates, recorded)
 
 
 def _choose(
@@ -153,7 +179,7 @@ def _choose(
         stem, unit = split_unit(name)
         if name in ALIASES:
             found.append(_Column(ALIASES[name], name, in_file))
-        elif unit is not None and QUANTITIES.get(stem) == unit.quantity:
+        elif unit is not None and unit.quantity in (QUANTITIES.get(stem), ALSO.get(stem)):
             found.append(_Column(stem, name, in_file, unit))
         elif name not in IGNORED and (name in columns or not columns):
             problems.append(Problem(where, _unknown(name, stem)))
@@ -257,6 +283,41 @@ def _check_times(header: Header, column: _Column, times: Floats, problems: list[
         )
     if len(late) > 20:
         problems.append(Problem(header.label, f"… and {len(late) - 20} more times like these"))
+
+
+def _unwrapped(
+    column: _Column,
+    by_stem: Mapping[str, Floats],
+    label: str,
+    line: Place,
+    remarks: list[str],
+    problems: list[Problem],
+) -> Floats:
+    """Return a joint's angle without jumps by full turns, saying what was done."""
+    assert column.unit is not None, "an angle has a unit"
+    angle, unit = by_stem[column.stem], column.unit
+    found = unwrap(angle)
+    name = plain(column.in_file)
+
+    def jump(row: int) -> str:
+        before, after = angle[row] / unit.to_si, angle[row + 1] / unit.to_si
+        return f"from {before:.6g} to {after:.6g} {unit.suffix}"
+
+    if found.unclear:
+        row = found.unclear[0]
+        what = (
+            f"{name}: jumps {jump(row)} within a row ({len(found.unclear)} such jumps), which no "
+            "joint follows and which is no full turn: give the angle without jumps, or more rows"
+        )
+        problems.append(Problem(f"{label}:{line(row + 1)}", what))
+    elif found.jumps:
+        row = found.jumps[0]
+        others = f" and {len(found.jumps) - 1} more" if len(found.jumps) > 1 else ""
+        remarks.append(
+            f"line {line(row + 1)}: {name} jumps {jump(row)}{others}; "
+            "the angle wraps there, and full turns were added so that it goes on"
+        )
+    return found.angle
 
 
 def _check_magnitudes(

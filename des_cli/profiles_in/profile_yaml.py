@@ -23,6 +23,7 @@ from des_cli.profiles_in.conditioning import (
     refuse_beside_expressions,
 )
 from des_cli.profiles_in.findings import Findings
+from des_cli.profiles_in.gaps import GapHandling
 from des_cli.profiles_in.machine_yaml import (
     build_machine,
     is_machine_file,
@@ -59,6 +60,8 @@ class Reading:
         Takes the bytes of the profile and of every file that it refers to.
     conditioning : Conditioning
         What is done to recorded samples.
+    gaps : GapHandling
+        What is done where samples are missing.
     remarks : list of str
         What reading changed of the file, a sentence each.
     """
@@ -67,6 +70,7 @@ class Reading:
     folder: Path
     digest: Any
     conditioning: Conditioning = field(default_factory=Conditioning)
+    gaps: GapHandling = field(default_factory=GapHandling)
     remarks: list[str] = field(default_factory=list)
 
     def referred(self, name: str, place: str) -> tuple[str, str]:
@@ -161,6 +165,7 @@ def finish(
     except DesError as error:
         unread = error
     reading.conditioning = read_conditioning(document, findings)
+    reading.gaps.policy = document.gap
     try:
         commands = commands_of(document, reading, findings)
     except DesError as error:
@@ -176,8 +181,12 @@ def finish(
         raise unread
     assert machine is not None, "otherwise something was found"
     assert commands is not None, "otherwise something was found"
+    if reading.gaps.parts > 1:
+        name = f"{document.name or name}-{reading.gaps.part}"
+    else:
+        name = document.name or name
     return Profile(
-        name=document.name or name,
+        name=name,
         t=commands[0],
         command=commands[1],
         machine=machine,
@@ -213,11 +222,14 @@ def read_initial(section: Any, commands: Commands | None, findings: Findings) ->
     """Return the joint angles at the first sample, (3,) [rad]."""
     given = [section.si(joint) if section is not None else 0.0 for joint in JOINTS]
     if commands is not None and isinstance(commands[1], JointCommands):
-        for joint in JOINTS[1:]:
+        arm_start = commands[1].arm_start
+        for joint in JOINTS[1:] if arm_start is None else JOINTS:
             key = section.given_key(joint) if section is not None else None
             if key:
                 words = f"the {joint} starts where its position command does; leave this out"
                 findings.add(["initial", key], words, of_key=True)
+        if arm_start is not None:
+            given[0] = arm_start
         given[1:] = commands[1].position[0].tolist()
     return np.array(given)
 
@@ -262,4 +274,6 @@ def document_commands(
 
 def _sampled(section: Any, reading: Reading, findings: Findings) -> Commands:
     label, text = reading.referred(section.file, findings.root.place_of(["samples", "file"]))
-    return parse_samples(text, label, section.columns, reading.conditioning, reading.remarks)
+    return parse_samples(
+        text, label, section.columns, reading.conditioning, reading.gaps, reading.remarks
+    )

@@ -29,9 +29,11 @@ from des_cli.profiles_in.conditioning_schema import (
     Trim,
 )
 from des_cli.profiles_in.expression import Expression, ExpressionError, parse_expression
+from des_cli.profiles_in.gaps import GapPolicy
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE, MachineSection
 from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault, measured
 from des_cli.profiles_in.wording import shown
+from des_cli.units import suffixes
 
 _NAME = re.compile(r"\w([\w .,+()-]{0,98}[\w)+])?")
 
@@ -142,11 +144,14 @@ Time = measured(
         Measure("step", "time", "the time between samples"),
     ),
 )
+ARM_ANGLES = tuple(f"arm_{suffix}" for suffix in suffixes("angle"))
+"""Keys that give the arm by its angle instead of its rate."""
+
 Joints = measured(
     "Joints",
-    "A velocity command for the arm, position commands for the fork and the cab.",
+    "A velocity (or angle) command for the arm, position commands for the fork and the cab.",
     (
-        Measure("arm", "rate", "the arm's rate"),
+        Measure("arm", "rate", "the arm's rate or angle", others=ARM_ANGLES),
         Measure("fork", "angle", "the fork's angle"),
         Measure("cab", "angle", "the cab's angle"),
     ),
@@ -295,6 +300,7 @@ class ProfileSettings(Section):
     seat: Seat = OMITTED  # type: ignore[valid-type]
     initial: Initial = OMITTED  # type: ignore[valid-type]
     samples: SamplesReading = OMITTED
+    gap: GapPolicy = OMITTED
     trim: Trim = OMITTED  # type: ignore[valid-type]
     axes: BodyAxes = OMITTED
     resample: Resample = OMITTED  # type: ignore[valid-type]

@@ -33,6 +33,8 @@ def encode_run_profile(run: Run, table: str) -> bytes:
         "seat": {"yaw_rad": run.seat.yaw, "pitch_rad": run.seat.pitch},
         "initial": {"arm_rad": float(run.commands.angle[0, 0])},
         "samples": {"file": table},
+        # A command table says what happens between its rows, however far they are apart.
+        "gap": "bridge",
     }
     lines = [
         f"# {run.profile.name}, as it was reduced: the commands and the seat belong together.",

@@ -127,7 +127,7 @@ def test_a_quoted_line_break_keeps_the_count_of_lines() -> None:
         (JOINTS.encode() + b"0,1,\xff,3\n", "is not UTF-8"),
         (JOINTS.encode("utf-16"), "is not UTF-8"),
         (b"t,arm,fork,cab\n0,1,2,3\n", "t is a time and needs its unit"),
-        (b"t_s,arm_deg,fork_deg,cab_deg\n0,1,2,3\n", "arm is a rate and needs its unit"),
+        (b"t_s,arm_m,fork_deg,cab_deg\n0,1,2,3\n", "arm is a rate and needs its unit"),
         (b"t_s,arm_rpm,frok_deg,cab_deg\n0,1,2,3\n", "did you mean fork_deg?"),
         (b"t_s,arm_rpm,fork_deg\n0,1,2\n", "a column is missing: cab_rad or cab_deg"),
         (b"t_s,p_rad_s,q_rad_s\n0,1,2\n", "a column is missing: r_rad_s"),

@@ -14,7 +14,7 @@ def test_every_key_of_the_contract_is_in_the_schema() -> None:
     schema = profile_json_schema()
     assert set(schema["properties"]) == {
         "format", "name", "machine", "seat", "initial", "time", "joints", "body_rates", "samples",
-        "trim", "axes", "resample", "smooth", "reduction",
+        "gap", "trim", "axes", "resample", "smooth", "reduction",
     }  # fmt: skip
     assert schema["required"] == ["format"]
     assert schema["additionalProperties"] is False
@@ -33,8 +33,8 @@ def test_every_unit_of_a_quantity_is_a_key() -> None:
 def test_exactly_one_unit_is_asked_for() -> None:
     rules = profile_json_schema()["$defs"]["Joints"]["allOf"]
     keys = [[rule["required"][0] for rule in one["oneOf"]] for one in rules]
-    assert keys == [["arm_rad_s", "arm_deg_s", "arm_rpm"], ["fork_rad", "fork_deg"],
-                    ["cab_rad", "cab_deg"]]  # fmt: skip
+    assert keys == [["arm_rad_s", "arm_deg_s", "arm_rpm", "arm_rad", "arm_deg"],
+                    ["fork_rad", "fork_deg"], ["cab_rad", "cab_deg"]]  # fmt: skip
 
 
 def test_the_schema_is_json_without_nulls_as_defaults() -> None:
