@@ -289,9 +289,11 @@ def test_a_rate_that_is_held_counts_as_changed():
     allowed = reduce_profile(held_rates(allow_change=0.5))
     allowed.require_release()
     assert all(check.ok for check in allowed.checks)
-    command, modified = profile.command, allowed.after.seat_rate
+    command, modified = allowed.asked.rates, allowed.after.seat_rate
+    assert np.isin(profile.t, allowed.asked.motion.t).all()
     recorded = np.stack([command.start, command.end], axis=1)
-    share = np.sqrt(np.sum((modified - recorded) ** 2) / np.sum(recorded**2))  # a steady grid
+    step = allowed.asked.motion.step[:, None, None]
+    share = np.sqrt(np.sum(step * (modified - recorded) ** 2) / np.sum(step * recorded**2))
     found = allowed.metrics["fidelity"]["seat_rate_deviation_relative"]
     assert found == pytest.approx(share, rel=1e-9)
     damping = allowed.metrics["changes"]["damping"]["seat_rate_deviation_relative"]

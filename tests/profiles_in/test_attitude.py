@@ -57,7 +57,7 @@ def seat_error_deg(profile: Profile, t: np.ndarray, turn: Rotation) -> float:
     asked = make_desired(profile)
     assert not np.any(asked.damped), "the machine can do it"
     seat = seat_rotation(chain_of(profile.machine, profile.seat), asked.motion.angle)
-    seat = Rotation.from_matrix(seat[np.isin(profile.t, t)])
+    seat = Rotation.from_matrix(seat[np.isin(asked.motion.t, t)])
     off = (seat[0].inv() * seat).inv() * (turn[0].inv() * turn)
     return float(np.degrees(np.max(off.magnitude())))
 

@@ -109,7 +109,7 @@ def test_the_key_stands_in_a_profile_with_samples_alone(tmp_path: Path) -> None:
         "format: des-coriolis/1\ntime: {start_s: 0, stop_s: 1, step_s: 0.1}\ngap: bridge\n"
         "joints: {arm_rpm: 1, fork_deg: 0, cab_deg: 0}\n"
     )
-    with pytest.raises(ProfileError, match="gap: is for samples; joints have none"):
+    with pytest.raises(ProfileError, match="gap: is for samples; the commands below joints say"):
         load_profile(path)
 
 
