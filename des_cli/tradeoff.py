@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from des_cli.kinematics.desired import make_desired
-from des_cli.kinematics.response import respond
+from des_cli.kinematics.response import respond, respond_as_asked
 from des_cli.metrics import Measured, measure
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import DesiredMotion, Motion
@@ -111,7 +111,7 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
         budget=(),
     )
     profile = replace(profile, reduction=wanted)
-    problem = pose_problem(profile, desired, asked.motion)
+    problem = pose_problem(profile, desired, asked)
     points = []
     for r2 in weights or (_weight(wanted.r2),):
         weighed = replace(problem, r2=np.array([r2]))
@@ -214,8 +214,8 @@ def _measure(
     profile: Profile, asked: DesiredMotion, problem: Problem, solution: Solution
 ) -> dict[str, Any]:
     """Measure a baseline as the pipeline measures an optimum."""
-    motions = (asked.motion, solution.modified)
-    before, after = (respond(profile.machine, profile.seat, motion) for motion in motions)
+    before = respond_as_asked(profile.machine, profile.seat, asked)
+    after = respond(profile.machine, profile.seat, solution.modified)
     violations = find_violations(profile.machine, solution.modified, "modified")
     against = compare(problem, solution.modified)
     return _measures(
@@ -223,6 +223,7 @@ def _measure(
             Measured(
                 profile=profile,
                 asked=asked,
+                target=asked.motion,
                 desired=problem.desired,
                 seat=profile.seat,
                 solution=solution,

@@ -73,7 +73,7 @@ def kinematics(
         write_data(_motion(profile, settings, columns, form))
         return
     if settings or columns:
-        raise click.UsageError("--set and --column change a PROFILE, and none is given.")
+        raise click.UsageError("--set, --column and the like change a PROFILE, and none is given.")
     write_data(_state(in_si(given), machine or "des", form))
 
 

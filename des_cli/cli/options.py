@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 import click
 
+from des_cli.cli.conditioning_options import conditioning_options
 from des_cli.cli.console import Console
 from des_cli.errors import FileAccessError, Problem
 
@@ -66,7 +67,7 @@ def profile_argument(command: F) -> F:
 
 
 def setting_options(command: F) -> F:
-    """Add ``--set`` and ``--column``, which change how a profile is read."""
+    """Add ``--set``, ``--column`` and what conditions a record: how a profile is read."""
     settings = click.option(
         "--set",
         "settings",
@@ -83,7 +84,7 @@ def setting_options(command: F) -> F:
         callback=_read_columns,
         help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
     )
-    return settings(columns(command))
+    return settings(columns(conditioning_options(command)))
 
 
 def machine_option(command: F) -> F:
@@ -173,6 +174,12 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
     ),
     ("lead_in", "SECONDS", "Ramp from rest to the start in this time."),
     ("lead_out", "SECONDS", "Ramp from the end to rest in this time."),
+    (
+        "allow_change",
+        "SHARE",
+        "Let conditioning and limits change so much of the record's seat rate or G first; the "
+        "budgets are then what the reduction may add.",
+    ),
     ("tolerance", "RAD_S2", "Largest Coriolis component that --method zero leaves."),
     ("iterations", click.IntRange(min=1), "Backward-forward sweeps of report-sweep."),
 )

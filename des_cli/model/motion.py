@@ -83,6 +83,35 @@ class Motion:
 
 
 @dataclass(frozen=True)
+class Shortfall:
+    """What a profile asks of the seat beyond what its joint motion makes: asked less made.
+
+    Parameters
+    ----------
+    seat_rate : (n - 1, 2, 3) array
+        At both ends of every interval, along x, y, z of the seat [rad/s].
+    seat_angular_acceleration : (n - 1, 2, 3) array
+        Likewise [rad/s^2].
+    seat_g : (n - 1, 2, 3) array
+        Likewise, in the pilot's signs [g].
+    attitude : (n, 3) array
+        At samples, the rotation vector along x, y, z of the seat that turns the
+        attitude that is made into the one that is asked for [rad].
+    """
+
+    seat_rate: Floats
+    seat_angular_acceleration: Floats
+    seat_g: Floats
+    attitude: Floats
+
+    def __post_init__(self) -> None:
+        n = len(self.attitude)
+        freeze(self, "attitude", (n, 3))
+        for name in ("seat_rate", "seat_angular_acceleration", "seat_g"):
+            freeze(self, name, (n - 1, 2, 3))
+
+
+@dataclass(frozen=True)
 class DesiredMotion:
     """The motion that a profile asks for, and how well the joints can make it.
 
@@ -101,6 +130,8 @@ class DesiredMotion:
     recorded_attitude_error : float, optional
         Largest geodesic angle between the attitude integrated from the rates
         and the recorded one, both relative to the first sample [rad].
+    shortfall : Shortfall, optional
+        What is asked for and not made; None where the joints make all of it.
     """
 
     motion: Motion
@@ -109,6 +140,7 @@ class DesiredMotion:
     residual: Floats
     attitude_error: float = 0.0
     recorded_attitude_error: float | None = None
+    shortfall: Shortfall | None = None
 
 
 def mean_of_sides(sides: Floats) -> Floats:

@@ -21,6 +21,13 @@ from des_cli.model.profile import (
     Method,
     Objective,
 )
+from des_cli.profiles_in.conditioning_schema import (
+    BodyAxes,
+    EulerOrder,
+    Resample,
+    Smooth,
+    Trim,
+)
 from des_cli.profiles_in.expression import Expression, ExpressionError, parse_expression
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE, MachineSection
 from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault, measured
@@ -157,7 +164,13 @@ BodyRates = measured(
 )
 
 
-class Samples(Section):
+class SamplesReading(Section):
+    """How the samples of a CSV file are read."""
+
+    euler: EulerOrder = OMITTED
+
+
+class Samples(SamplesReading):
     """Commands recorded in a CSV file beside the profile."""
 
     file: Annotated[str, Field(strict=True, min_length=1)]
@@ -248,6 +261,10 @@ class ReductionBase(Section):
     ends: Ends = OMITTED
     objective: Objective = OMITTED
     optimise: Annotated[list[FreeParameter], AfterValidator(_check_unequal)] = OMITTED
+    allow_change: Annotated[
+        Positive,
+        Field(description="share of the recorded seat rate or G that may change first"),
+    ] = OMITTED
     tolerance: Positive = OMITTED
 
 
@@ -277,6 +294,11 @@ class ProfileSettings(Section):
     machine: MachineChoice = DEFAULT_MACHINE
     seat: Seat = OMITTED  # type: ignore[valid-type]
     initial: Initial = OMITTED  # type: ignore[valid-type]
+    samples: SamplesReading = OMITTED
+    trim: Trim = OMITTED  # type: ignore[valid-type]
+    axes: BodyAxes = OMITTED
+    resample: Resample = OMITTED  # type: ignore[valid-type]
+    smooth: Smooth = OMITTED
     reduction: ReductionSection = OMITTED  # type: ignore[valid-type]
 
 
@@ -290,6 +312,8 @@ class ProfileDocument(ProfileSettings):
     joints: Joints = OMITTED  # type: ignore[valid-type]
     body_rates: BodyRates = OMITTED  # type: ignore[valid-type]
     samples: Samples = OMITTED
+    trim: Trim = OMITTED  # type: ignore[valid-type]
+    resample: Resample = OMITTED  # type: ignore[valid-type]
     reduction: ReductionSection = OMITTED  # type: ignore[valid-type]
 
 
