@@ -9,9 +9,11 @@ angle's bound is drawn in where its parabola can bulge beyond the samples.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Floats, Indices
 from des_cli.model.machine import Machine
 from des_cli.model.motion import Motion
 from des_cli.reduction.rates import Rates
@@ -73,113 +75,66 @@ def _next_to(intervals: Floats) -> Floats:
     return np.maximum(np.vstack([intervals, edge]), np.vstack([edge, intervals]))
 
 
-class RateRows(Rows):
-    """Joint rates inside their limits, at samples.
+class RateSums(Rows):
+    """Weighted sums of a joint's rates at neighbouring samples: rates, accelerations, jerks.
 
     Parameters
     ----------
-    machine : Machine
     rates : Rates
         With one point at each sample.
-    step : (n - 1,) array
-        [s]
+    weights : sequence of (q, r) array
+        Of the rates at samples k, k + 1, ..., over the limit.
+    joints : (r,) int array
+        Whose rates they are.
     """
 
-    def __init__(self, machine: Machine, rates: Rates, step: Floats) -> None:
-        super().__init__(np.arange(len(step) + 1))
-        self.rates = rates
-        self.per_rate = 1.0 / (np.array([limit.rate for limit in machine.limits]) * (1.0 - MARGIN))
+    def __init__(self, rates: Rates, weights: Sequence[Floats], joints: Indices) -> None:
+        super().__init__(np.arange(len(weights[0])))
+        self.rates, self.weights, self.joints = rates, weights, joints
+
+    def _ahead(self) -> Iterator[tuple[Floats, slice]]:
+        """Pair the weights with the samples that they are of."""
+        n = len(self.node)
+        return ((weight, slice(i, i + n)) for i, weight in enumerate(self.weights))
 
     def value(self, x: Floats) -> Floats:
-        """Return the rates over their limits."""
-        return self.rates.value(x) * self.per_rate
-
-    def jacobian(self, x: Floats) -> tuple[Floats, ...]:
-        """Return the derivative in x_k."""
-        return (self.rates.expand(x)[1] * self.per_rate[:, None],)
-
-    def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
-        """Return the rates' curvature along the multipliers."""
-        return self.rates.bend(x, multiplier * self.per_rate)
-
-
-class AccelerationRows(Rows):
-    """Joint accelerations inside their limits, over intervals.
-
-    Parameters
-    ----------
-    machine : Machine
-    rates : Rates
-        With one point at each sample.
-    step : (n - 1,) array
-        [s]
-    """
-
-    def __init__(self, machine: Machine, rates: Rates, step: Floats) -> None:
-        super().__init__(np.arange(len(step)))
-        self.rates = rates
-        limit = np.array([limit.acceleration for limit in machine.limits]) * (1.0 - MARGIN)
-        self.per_change = 1.0 / (limit * step[:, None])
-
-    def value(self, x: Floats) -> Floats:
-        """Return the accelerations over their limits."""
-        return np.diff(self.rates.value(x), axis=0) * self.per_change
-
-    def jacobian(self, x: Floats) -> tuple[Floats, ...]:
-        """Return the derivatives in x_k and x_{k+1}."""
-        slope = self.rates.expand(x)[1]
-        each = self.per_change[:, :, None]
-        return -slope[:-1] * each, slope[1:] * each
-
-    def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
-        """Return the curvature of both ends' rates along the multipliers."""
-        push = multiplier * self.per_change
-        pull = np.zeros((len(x), 3))
-        pull[1:] += push
-        pull[:-1] -= push
-        return self.rates.bend(x, pull)
-
-
-class JerkRows(Rows):
-    """Changes of the acceleration from one interval to the next, of joints that have a limit.
-
-    Parameters
-    ----------
-    machine : Machine
-    rates : Rates
-        With one point at each sample.
-    step : (n - 1,) array
-        [s]
-    """
-
-    def __init__(self, machine: Machine, rates: Rates, step: Floats) -> None:
-        super().__init__(np.arange(len(step) - 1))
-        limit = np.array([limit.jerk for limit in machine.limits]) * (1.0 - MARGIN)
-        self.rates, self.joints = rates, np.flatnonzero(np.isfinite(limit))
-        apart = 0.5 * (step[1:] + step[:-1])[:, None] * limit[self.joints]
-        first, last = 1.0 / (step[:-1, None] * apart), 1.0 / (step[1:, None] * apart)
-        self.share = (first, -first - last, last)
-        """Coefficients of the rates at samples k, k + 1 and k + 2, (n - 2, joints)."""
-
-    def value(self, x: Floats) -> Floats:
-        """Return the jerks over their limits."""
+        """Return the sums over their limits."""
         rate = self.rates.value(x)[:, self.joints]
-        n = len(self.node)
-        return np.asarray(sum(c * rate[i : i + n] for i, c in enumerate(self.share)))
+        return np.asarray(sum(weight * rate[at] for weight, at in self._ahead()))
 
     def jacobian(self, x: Floats) -> tuple[Floats, ...]:
-        """Return the derivatives in x_k, x_{k+1} and x_{k+2}."""
+        """Return the derivatives in x_k, x_{k+1}, ..."""
         slope = self.rates.expand(x)[1][:, self.joints]
-        n = len(self.node)
-        return tuple(c[:, :, None] * slope[i : i + n] for i, c in enumerate(self.share))
+        return tuple(weight[:, :, None] * slope[at] for weight, at in self._ahead())
 
     def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
-        """Return the curvature of the three rates along the multipliers."""
-        weight = np.zeros((len(x), 3))
-        n = len(self.node)
-        for i, c in enumerate(self.share):
-            weight[i : i + n, self.joints] += c * multiplier
-        return self.rates.bend(x, weight)
+        """Return the curvature of the rates along the multipliers."""
+        total = np.zeros((len(x), 3))
+        for weight, at in self._ahead():
+            total[at, self.joints] += weight * multiplier
+        return self.rates.bend(x, total)
+
+
+def _rate_rows(machine: Machine, rates: Rates, step: Floats) -> RateSums:
+    """Return the rows of rates at samples."""
+    limit = np.array([limit.rate for limit in machine.limits]) * (1.0 - MARGIN)
+    return RateSums(rates, [np.tile(1.0 / limit, (len(step) + 1, 1))], np.arange(3))
+
+
+def _acceleration_rows(machine: Machine, rates: Rates, step: Floats) -> RateSums:
+    """Return the rows of accelerations over intervals."""
+    limit = np.array([limit.acceleration for limit in machine.limits]) * (1.0 - MARGIN)
+    weight = 1.0 / (limit * step[:, None])
+    return RateSums(rates, [-weight, weight], np.arange(3))
+
+
+def _jerk_rows(machine: Machine, rates: Rates, step: Floats) -> RateSums:
+    """Return the rows of jerks between intervals, of the joints that have a limit."""
+    limit = np.array([limit.jerk for limit in machine.limits]) * (1.0 - MARGIN)
+    joints = np.flatnonzero(np.isfinite(limit))
+    apart = 0.5 * (step[1:] + step[:-1])[:, None] * limit[joints]
+    first, last = 1.0 / (step[:-1, None] * apart), 1.0 / (step[1:, None] * apart)
+    return RateSums(rates, [first, -first - last, last], joints)
 
 
 def limit_rows(machine: Machine, rates: Rates, desired: Motion, unknowns: int) -> tuple[Rows, ...]:
@@ -197,9 +152,9 @@ def limit_rows(machine: Machine, rates: Rates, desired: Motion, unknowns: int) -
     """
     step = desired.step
     rows = (
-        RateRows(machine, rates, step),
-        AccelerationRows(machine, rates, step),
+        _rate_rows(machine, rates, step),
+        _acceleration_rows(machine, rates, step),
         AngleRows(machine, desired, unknowns),
     )
     smooth = any(np.isfinite(limit.jerk) for limit in machine.limits) and len(step) > 1
-    return (*rows, JerkRows(machine, rates, step)) if smooth else rows
+    return (*rows, _jerk_rows(machine, rates, step)) if smooth else rows

@@ -1,4 +1,6 @@
-"""Factors on the study's maneuvers, as `reduction`'s tests have them."""
+"""Factors on the study's maneuvers, as `reduction`'s tests have them, and a free motion."""
+
+import pytest
 
 from tests.reduction.conftest import (  # noqa: F401
     closed_cost,
@@ -7,3 +9,10 @@ from tests.reduction.conftest import (  # noqa: F401
     pose,
     solve_problem,
 )
+from tests.support.free_case import Case
+
+
+@pytest.fixture(scope="session")
+def case() -> Case:
+    """The Cobra within its default budgets."""
+    return Case()

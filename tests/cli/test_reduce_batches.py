@@ -1,0 +1,74 @@
+"""``reduce`` with several profiles, and again."""
+
+import pytest
+
+from tests.support.run_files import RUN_FILES
+
+
+def test_several_profiles_have_a_folder_each(invoke, write_profile, tmp_path) -> None:
+    files = [write_profile(name).name for name in ("one", "two")]
+    result = invoke("reduce", *files, "--no-plots", "-o", "all")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert {path.name for path in (tmp_path / "all").iterdir()} == {"one", "two"}
+    assert result.stderr.splitlines()[-1] == "2 profiles: 2 done"
+
+
+def test_a_batch_stops_at_the_first_failure(invoke, write_profile, tmp_path) -> None:
+    files = [write_profile("bad", fork_deg="sin(").name, write_profile("good").name]
+    result = invoke("reduce", *files, "--no-plots")
+    assert result.exit_code == 1
+    assert "1 failed, 1 not run (--keep-going" in result.stderr
+    assert not (tmp_path / "runs" / "good").exists()
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_keep_going_runs_the_others(invoke, write_profile, tmp_path, jobs: str) -> None:
+    names = ("first", "bad", "last")
+    files = [write_profile(name, **{"fork_deg": "sin("} if name == "bad" else {}) for name in names]
+    args = [path.name for path in files]
+    result = invoke("reduce", *args, "--no-plots", "--keep-going", "--jobs", jobs)
+    assert result.exit_code == 1
+    lines = [line for line in result.stderr.splitlines() if not line.startswith(" ")]
+    assert [line.split()[0].partition(":")[0] for line in lines[:3]] == [
+        "first",
+        "bad.yaml",
+        "last",
+    ]
+    assert lines[-1] == "3 profiles: 2 done, 1 failed"
+    assert {path.name for path in (tmp_path / "runs").iterdir()} == {"first", "last"}
+
+
+def test_the_number_of_jobs_does_not_change_a_byte(command, write_profile, tmp_path) -> None:
+    files = [write_profile(name).name for name in ("one", "two")]
+    for jobs in ("1", "2"):
+        done = command("reduce", *files, "--no-plots", "--jobs", jobs, "-o", f"by{jobs}")
+        assert done.returncode == 0, done.stderr
+    for name in ("one", "two"):
+        for file in RUN_FILES:
+            single = (tmp_path / "by1" / name / file).read_bytes()
+            assert single == (tmp_path / "by2" / name / file).read_bytes()
+
+
+def test_two_profiles_of_one_name_are_refused_before_anything_runs(
+    invoke, write_profile, tmp_path
+) -> None:
+    first = write_profile("same")
+    (tmp_path / "copy.yaml").write_bytes(first.read_bytes())
+    result = invoke("reduce", first.name, "copy.yaml", "--keep-going")
+    assert result.exit_code == 2
+    assert "same.yaml, copy.yaml" in result.stderr
+    assert not (tmp_path / "runs").exists()
+
+
+def test_resume_keeps_a_finished_run_and_refuses_another(invoke, write_profile, tmp_path) -> None:
+    files = [write_profile(name).name for name in ("one", "two")]
+    assert invoke("reduce", files[0], "--no-plots").exit_code == 0
+    table = tmp_path / "runs" / "one" / "commands.csv"
+    before = table.stat().st_mtime_ns
+    result = invoke("reduce", *files, "--no-plots", "--resume")
+    assert result.exit_code == 0
+    assert result.stderr.splitlines()[-1] == "2 profiles: 1 done, 1 already done"
+    assert table.stat().st_mtime_ns == before
+    result = invoke("reduce", files[0], "--no-plots", "--resume", "--r2", "8")
+    assert result.exit_code == 1
+    assert "very same profile" in result.stderr or "of this very profile" in result.stderr

@@ -1,0 +1,151 @@
+"""``reduce``: what is refused, what has no solution, and with which exit code."""
+
+import numpy as np
+import pytest
+
+from tests.support.run_files import csv_rows
+
+
+@pytest.mark.parametrize("way", ["reduce", "dry-run", "validate"])
+def test_what_excludes_something_else_is_2(invoke, small: str, tmp_path, way: str) -> None:
+    options = (
+        "--limits",
+        "enforce",
+        "--algorithm",
+        "report-sweep",
+        "--set",
+        "reduction.hold=[arm]",
+    )
+    command = ("validate", small) if way == "validate" else ("reduce", small)
+    result = invoke(*command, *options, *(["--dry-run"] if way == "dry-run" else []))
+    assert (result.exit_code, result.stdout) == (2, "")
+    lines = result.stderr.splitlines()
+    assert len(lines) == 2
+    assert all(line.startswith("small: reduction: ") for line in lines)
+    assert "--limits warn" in lines[0]
+    assert "per-joint" in lines[1]
+    assert {path.name for path in tmp_path.iterdir()} == {small}
+
+
+def test_sweeps_that_run_away_are_4_in_one_line(invoke, tmp_path) -> None:
+    options = ("--algorithm", "report-sweep", "--iterations", "20", "--r2", "0.02")
+    result = invoke("reduce", "cobra", "--set", "time.step_s=0.05", *options)
+    assert (result.exit_code, result.stdout) == (4, "")
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("cobra: diverged: sweep ")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("fork", ["0", '"-60*(1 - cos(pi*t/5))"'])
+@pytest.mark.parametrize(
+    "args",
+    [["--budget", "0.05"], ["--budget", "seat_rate_deviation_relative=0.1"], ["--r2", "1"]],
+    ids=" ".join,
+)
+def test_a_motion_without_coriolis_stays_as_it_is(invoke, write_profile, fork, args) -> None:
+    # the arm alone, and the fork alone
+    arm = "8" if fork == "0" else "0"
+    still = write_profile("still", arm_rpm=arm, fork_deg=fork, cab_deg="0").name
+    result = invoke("reduce", still, "-o", "-", *args)
+    assert result.exit_code == 0, result.stderr
+    desired = invoke("reduce", still, "-o", "-", "--algorithm", "report-sweep").stdout
+    np.testing.assert_allclose(csv_rows(result.stdout), csv_rows(desired), rtol=0, atol=1e-3)
+
+
+def test_a_machine_at_rest_stays_at_rest(invoke, write_profile) -> None:
+    rest = write_profile("rest", arm_rpm="0", fork_deg="0", cab_deg="0").name
+    for args in (["--budget", "0.05"], ["--budget", "seat_rate_deviation_relative=0.1"], []):
+        result = invoke("reduce", rest, "-o", "-", *args)
+        assert result.exit_code == 0, result.stderr
+        assert not csv_rows(result.stdout)[:, 1:].any()
+
+
+def test_check_refuses_a_motion_beyond_the_limits(invoke, write_profile, tmp_path) -> None:
+    fast = write_profile("fast", arm_rpm='"8.8 + 20*t"').name
+    for out in ("x.csv", "folder"):
+        result = invoke("reduce", fast, "--limits", "check", "-o", out)
+        assert result.exit_code == 5
+        assert "exceeds the limit" in result.stderr
+        assert not (tmp_path / out).exists()
+
+
+def test_no_solution_is_4_and_leaves_no_table(invoke, small: str, tmp_path) -> None:
+    args = ("--set", "reduction.max_iterations=1", "--r2", "0.01")
+    for out in ("x.csv", "folder", "-"):
+        result = invoke("reduce", small, *args, "-o", out)
+        assert (result.exit_code, result.stdout) == (4, "")
+        assert result.stderr.startswith("small: ")
+        assert {path.name for path in tmp_path.iterdir()} == {small}
+
+
+def test_a_rejected_profile_is_3_with_every_problem(invoke, write_profile, tmp_path) -> None:
+    bad = write_profile("bad", fork_deg="sin(", machine="dse").name
+    result = invoke("reduce", bad)
+    assert (result.exit_code, result.stdout) == (3, "")
+    assert len(result.stderr.splitlines()) == 2
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_failed_overwrite_leaves_no_older_table(invoke, small: str, tmp_path) -> None:
+    broken = ("--set", "reduction.max_iterations=1", "--r2", "0.01", "--overwrite")
+    for out in ("x.csv", "folder"):
+        assert invoke("reduce", small, "--no-plots", "-o", out).exit_code == 0
+        result = invoke("reduce", small, *broken, "-o", out)
+        assert result.exit_code == 4
+        assert f"withdrew the earlier {out}" in result.stderr
+        assert not (tmp_path / "x.csv").exists()
+        assert not list(tmp_path.glob("folder/*.*"))
+
+
+def test_an_existing_output_is_refused_before_solving(invoke, small: str, tmp_path) -> None:
+    for out in ("x.csv", "folder"):
+        assert invoke("reduce", small, "--no-plots", "-o", out).exit_code == 0
+        target = tmp_path / out
+        before = (target if target.is_file() else target / "commands.csv").read_bytes()
+        result = invoke("reduce", small, "-v", "--r2", "8", "-o", out)
+        assert result.exit_code == 1
+        assert "--overwrite" in result.stderr
+        assert "iter" not in result.stderr
+        after = (target if target.is_file() else target / "commands.csv").read_bytes()
+        assert before == after
+        again = ("reduce", small, "--no-plots", "--r2", "8", "-o", out, "--overwrite")
+        assert invoke(*again).exit_code == 0
+        replaced = (target if target.is_file() else target / "commands.csv").read_bytes()
+        assert replaced != before
+
+
+def test_a_missing_folder_of_a_table_is_refused_before_solving(invoke, small: str) -> None:
+    result = invoke("reduce", small, "-v", "-o", "no/x.csv")
+    assert result.exit_code == 1
+    assert result.stderr.count("\n") == 1
+
+
+def test_dry_run_writes_nothing(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", small, "--dry-run")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert "would be reduced into runs/small" in result.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {small}
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (["-f", "json"], "add -o FILE"),
+        (["-o", "x.csv", "-f", "json"], "contradicts"),
+        (["-o", ".", "-f", "json"], "is a folder"),
+        (["-o", "x.csv", "--resume"], "--resume needs run folders"),
+        (["other.yaml", "-o", "x.csv"], "several profiles"),
+        (["other.yaml", "-o", "-"], "several profiles"),
+        (["--set", "reduction.r2"], "KEY=VALUE"),
+        (["--set", "=1"], "KEY=VALUE"),
+        (["--column", "t_s"], "NAME=HEADER"),
+        (["--column", "t_s=a", "--column", "t_s=b"], "given twice"),
+        (["--jobs", "-1"], "--jobs"),
+        (["--iterations", "0"], "--iterations"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else None,
+)
+def test_wrong_use_is_2(invoke, small: str, args: list[str], words: str) -> None:
+    result = invoke("reduce", small, *args)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert words in result.stderr

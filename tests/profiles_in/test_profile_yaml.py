@@ -1,0 +1,94 @@
+"""Whole profiles: the Cobra, units, segments, and middles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from des_cli.model.machines import DES
+from des_cli.model.profile import BodyRates, JointCommands
+from des_cli.profiles_in.load import load_profile
+from tests.support.profiles import SMALL, load
+
+
+def test_the_cobra_is_the_study_s_equations_34_to_37() -> None:
+    profile = load_profile("cobra")
+    command, t = profile.command, profile.t
+    assert isinstance(command, JointCommands)
+    assert (profile.name, profile.machine, len(t)) == ("cobra", DES, 1001)
+    early = t < 5
+    rpm, degree = 2 * np.pi / 60, np.pi / 180
+    arm = np.where(early, 8.8 - 0.66 * t, 5.5 + 0.66 * (t - 5)) * rpm
+    np.testing.assert_allclose(command.arm_rate, arm, rtol=1e-14)
+    np.testing.assert_allclose(
+        command.position[:, 0], -np.pi / 3 * (1 - np.cos(np.pi * t / 5)), atol=1e-14
+    )
+    cab = np.where(early, 30 - 2.5 * t, 5 + 2.5 * t) * degree
+    np.testing.assert_allclose(command.position[:, 1], cab, rtol=1e-14)
+    # The cab's rate steps at t = 5 s; the interval on either side keeps its own.
+    assert t[500] == 5.0
+    np.testing.assert_allclose(command.rate_end[:500, 1], -2.5 * degree, rtol=1e-13)
+    np.testing.assert_allclose(command.rate_start[500:, 1], 2.5 * degree, rtol=1e-13)
+    fork_rate = -np.pi / 3 * np.pi / 5 * np.sin(np.pi * t / 5)
+    np.testing.assert_allclose(command.rate_start[:, 0], fork_rate[:-1], atol=1e-14)
+    np.testing.assert_allclose(command.rate_end[:, 0], fork_rate[1:], atol=1e-14)
+    np.testing.assert_allclose(profile.initial_angle, [0, 0, np.pi / 6], atol=1e-15)
+    reduction = profile.reduction
+    assert (reduction.axes, reduction.control, reduction.limits) == ("report", "scalar", "warn")
+    np.testing.assert_array_equal(reduction.r1, np.diag([0, 2, 0]))
+    np.testing.assert_array_equal(reduction.r2, 1)
+
+
+def test_any_unit_of_the_table_gives_the_same_profile() -> None:
+    other = """\
+format: des-coriolis/1
+name: small
+time: {start_ms: 0, stop_min: 0.03333333333333333, step_us: 500000}
+joints: {arm_deg_s: 57.29577951308232, fork_rad: "pi/18*t", cab_rad: "pi/36"}
+"""
+    a, b = load(SMALL), load(other)
+    np.testing.assert_allclose(a.t, b.t, rtol=1e-14)
+    assert isinstance(a.command, JointCommands)
+    assert isinstance(b.command, JointCommands)
+    np.testing.assert_allclose(a.command.arm_rate, b.command.arm_rate, rtol=1e-14)
+    np.testing.assert_allclose(a.command.position, b.command.position, rtol=1e-14)
+
+
+def test_a_joint_of_segments_between_samples_becomes_a_sample() -> None:
+    segments = """
+    - {from_s: 0, to_ms: 700, value: "t"}
+    - {from_s: 0.7, to_s: 2, value: "0.7 - (t - 0.7)"}
+"""
+    profile = load(SMALL.replace('"10*t"', segments))
+    assert profile.t.tolist() == [0, 0.5, 0.7, 1, 1.5, 2]
+    assert isinstance(profile.command, JointCommands)
+    rates = np.degrees(profile.command.rate_start[:, 0])
+    np.testing.assert_allclose(rates, [1, 1, -1, -1, -1], rtol=1e-12)
+
+
+def test_segments_may_reach_beyond_the_time_that_is_flown() -> None:
+    short = load_profile("cobra", settings=["time.stop_s=4", "time.start_s=1"])
+    assert (short.t[0], short.t[-1]) == (1.0, 4.0)
+    assert isinstance(short.command, JointCommands)
+    np.testing.assert_allclose(np.degrees(short.command.position[-1, 1]), 20.0)
+
+
+def test_body_rates_have_exact_middles() -> None:
+    text = """\
+format: des-coriolis/1
+time: {start_s: 0, stop_s: 1, step_s: 0.25}
+initial: {arm_deg: 10, fork_deg: 20, cab_rad: 1}
+body_rates: {p_deg_s: "exp(t)", q_rad_s: 0.5, r_rpm: [{from_s: 0, to_s: 1, value: "t**3"}]}
+"""
+    profile = load(text)
+    assert isinstance(profile.command, BodyRates)
+    middle = 0.5 * (profile.t[:-1] + profile.t[1:])
+    for times, values in (
+        (profile.t[:-1], profile.command.start),
+        (middle, profile.command.middle),
+        (profile.t[1:], profile.command.end),
+    ):
+        want = [np.radians(np.exp(times)), 0.5 + 0 * times, times**3 * np.pi / 30]
+        np.testing.assert_allclose(values, np.column_stack(want), rtol=1e-14)
+    assert profile.command.attitude is None
+    np.testing.assert_allclose(profile.initial_angle, [*np.radians([10, 20]), 1])
+    assert profile.name == "stdin"
