@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond
 from des_cli.metrics import Measured, measure
 from des_cli.model.motion import Motion
@@ -16,6 +15,7 @@ from des_cli.model.solution import Iteration
 from des_cli.notices import find_notices
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.consistency import require_consistent
+from des_cli.reduction.desired import find_desired
 from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion
@@ -45,7 +45,7 @@ def reduce_profile(
         If the reduction asks for things that exclude each other.
     """
     require_consistent(profile.reduction, profile.name)
-    asked = make_desired(profile)
+    asked = find_desired(profile)
     found = find_motion(profile, asked.motion, on_iteration)
     found, led = _with_leads(profile, found)
     modified = found.solution.modified

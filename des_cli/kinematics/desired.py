@@ -46,6 +46,7 @@ def make_desired(profile: Profile) -> DesiredMotion:
     Parameters
     ----------
     profile : Profile
+        Of joint commands or body rates.
 
     Returns
     -------
@@ -57,7 +58,9 @@ def make_desired(profile: Profile) -> DesiredMotion:
     chain = chain_of(profile.machine, profile.seat)
     if isinstance(profile.command, JointCommands):
         return _from_joints(chain, profile, profile.command)
-    return _from_body_rates(chain, profile, profile.command)
+    if isinstance(profile.command, BodyRates):
+        return _from_body_rates(chain, profile, profile.command)
+    raise TypeError("an asked G takes the machine's limits: reduction.desired.find_desired")
 
 
 def _from_joints(chain: Chain, profile: Profile, command: JointCommands) -> DesiredMotion:

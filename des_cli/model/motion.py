@@ -83,6 +83,31 @@ class Motion:
 
 
 @dataclass(frozen=True)
+class GOffset:
+    """How far the G that a machine can make is from the one that is asked.
+
+    Parameters
+    ----------
+    rms, largest : float
+        Of the length of the difference of the G-vectors [g].
+    largest_at : float
+        Time of the largest [s].
+    onset_asked, onset_made : float
+        Largest change of |G| over a tenth of a second, per second [g/s].
+    roll_rate_rms, pitch_rate_rms : float, optional
+        Of the difference of the seat's rates, where rates are asked beside the G [rad/s].
+    """
+
+    rms: float
+    largest: float
+    largest_at: float
+    onset_asked: float
+    onset_made: float
+    roll_rate_rms: float | None = None
+    pitch_rate_rms: float | None = None
+
+
+@dataclass(frozen=True)
 class DesiredMotion:
     """The motion that a profile asks for, and how well the joints can make it.
 
@@ -101,6 +126,11 @@ class DesiredMotion:
     recorded_attitude_error : float, optional
         Largest geodesic angle between the attitude integrated from the rates
         and the recorded one, both relative to the first sample [rad].
+    seat_g : (n - 1, 2, 3) array, optional
+        Where the profile asks for G: what it asks for, at both ends of every interval in
+        the pilot's signs [g]. The motion is the machine's nearest to it.
+    g_offset : GOffset, optional
+        How near that is.
     """
 
     motion: Motion
@@ -109,6 +139,8 @@ class DesiredMotion:
     residual: Floats
     attitude_error: float = 0.0
     recorded_attitude_error: float | None = None
+    seat_g: Floats | None = None
+    g_offset: GOffset | None = None
 
 
 def mean_of_sides(sides: Floats) -> Floats:
