@@ -1,17 +1,18 @@
-"""Rates beside an asked G: which of them the fork and cab can follow, and for how long.
+"""Rates beside an asked G: which of them fork and cab can follow, and for how long.
 
-Two joints make the direction of G, and the same two would make roll and pitch rate. The
-classical answer is a complementary filter with the washout time T. With w0 the seat's rate
-while only the direction of G is followed and w the recorded one, the seat is to turn with ::
+The same two joints make the direction of G, and roll and pitch rate. The classical answer
+of motion cueing (Nahon and Reid 1990) is a washout: with w0 the seat's rate while only the
+direction of G is followed and w the recorded one, the seat is to turn with ::
 
-    (1 - H) w0 + H w,    H(s) = s^2 / (s + 1/T)^2                                   (G3)
+    w0 + H w,    H(s) = s^2 / (s + 1/T)^2                                           (G3)
 
 so that it is turned, beside the direction of G, by the small rotation d with ::
 
-    d'' + (2/T) d' + d/T^2 = (w - w0)'                                             (G4)
+    d'' + (2/T) d' + d/T^2 = w'                                                     (G4)
 
-from rest. H is of second order: a steady rate, as the pitch rate of a long turn, then
-leaves no tilt behind. The asked G is seen along axes that are turned by d.
+What is faster than the washout time T is felt as it was recorded, and what is slower gives
+way to the direction of G. H is of second order: a steady rate, as the pitch rate of a long
+turn, then leaves no tilt behind. The asked G is seen along axes that are turned by d.
 """
 
 from __future__ import annotations
@@ -21,15 +22,15 @@ import numpy as np
 from des_cli.model.arrays import Floats
 
 
-def washed_rotation(step: Floats, difference: Floats, washout: float) -> Floats:
+def washed_rotation(step: Floats, rates: Floats, washout: float) -> Floats:
     """Return the rotation d of (G4) at samples, (n, m) [rad].
 
     Parameters
     ----------
     step : (n - 1,) array
         [s]
-    difference : (n - 1, 2, m) array
-        w - w0 at both ends of every interval, linear between [rad/s].
+    rates : (n - 1, 2, m) array
+        w at both ends of every interval, linear between [rad/s].
     washout : float
         T [s].
 
@@ -45,10 +46,10 @@ def washed_rotation(step: Floats, difference: Floats, washout: float) -> Floats:
     # int_0^h exp(-pole (h - s)) ds, and the same of s/h
     whole = -np.expm1(-x) / pole
     ramp = np.where(x > 1e-4, (step - whole) / np.maximum(x, 1e-300), step * (0.5 - x / 6.0))
-    rotation = np.zeros((len(step) + 1, difference.shape[2]))
-    slow = washout * difference[0, 0]
+    rotation = np.zeros((len(step) + 1, rates.shape[2]))
+    slow = washout * rates[0, 0]
     slower = washout * slow
-    for k, (u0, u1) in enumerate(difference):
+    for k, (u0, u1) in enumerate(rates):
         after = decay[k] * slow + whole[k] * u0 + ramp[k] * (u1 - u0)
         slower = decay[k] * slower + whole[k] * slow + ramp[k] * (after - slow)
         slow = after

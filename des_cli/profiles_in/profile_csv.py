@@ -9,8 +9,10 @@ import numpy as np
 
 from des_cli.errors import Problem, ProfileError
 from des_cli.model.arrays import Floats
-from des_cli.model.profile import BodyRates, JointCommands
+from des_cli.model.profile import BodyRates, GCommand, JointCommands
 from des_cli.profiles_in.csv_table import Header, read_columns, split_header
+from des_cli.profiles_in.g_commands import sampled_g
+from des_cli.profiles_in.g_schema import G_STEMS, RATE_STEMS
 from des_cli.profiles_in.positions import middles_of_samples, rates_of_positions
 from des_cli.profiles_in.sampling import MAX_MAGNITUDE
 from des_cli.profiles_in.wording import did_you_mean, one_of, plain
@@ -24,9 +26,13 @@ QUANTITIES: Mapping[str, str] = {
     "p": "rate",
     "q": "rate",
     "r": "rate",
+    "gx": "specific_force",
+    "gy": "specific_force",
+    "gz": "specific_force",
 }
 """What each column measures."""
 
+_KINDS = {"rate": "a rate", "angle": "an angle", "time": "a time", "specific_force": "a G"}
 _JOINTS = ("arm", "fork", "cab")
 _RATES = ("p", "q", "r")
 QUATERNION = ("q0", "q1", "q2", "q3")
@@ -62,8 +68,8 @@ class _Column:
 
 def parse_samples(
     text: str, label: str, columns: Mapping[str, str]
-) -> tuple[Floats, JointCommands | BodyRates]:
-    """Read joint commands or body rates from the text of a CSV file.
+) -> tuple[Floats, JointCommands | BodyRates | GCommand]:
+    """Read joint commands, body rates or an asked G from the text of a CSV file.
 
     Parameters
     ----------
@@ -79,7 +85,7 @@ def parse_samples(
     -------
     t : (n,) array
         [s]
-    commands : JointCommands or BodyRates
+    commands : JointCommands, BodyRates or GCommand
 
     Raises
     ------
@@ -104,6 +110,8 @@ def parse_samples(
     if problems:
         raise ProfileError(problems)
     t = by_stem["t"]
+    if any(stem in by_stem for stem in G_STEMS):
+        return sampled_g(t, by_stem)
     if "arm" in by_stem:
         position = np.column_stack([by_stem["fork"], by_stem["cab"]])
         rate = rates_of_positions(t, position)
@@ -126,7 +134,10 @@ def _choose(header: Header, columns: Mapping[str, str], problems: list[Problem])
         elif name not in IGNORED and (name in columns or not columns):
             problems.append(Problem(where, _unknown(name, stem)))
     _check_complete(found, names.values(), where, problems)
-    kept = {"t", *(_JOINTS if any(column.stem == "arm" for column in found) else _RATES)}
+    stems = {column.stem for column in found}
+    if stems & set(G_STEMS):
+        return [column for column in found if column.stem in ("t", *G_STEMS, *RATE_STEMS)]
+    kept = {"t", *(_JOINTS if "arm" in stems else _RATES)}
     attitude = {column.stem for column in found if column.stem in QUATERNION}
     if "arm" not in kept and len(attitude) == len(QUATERNION):
         kept |= attitude
@@ -155,7 +166,7 @@ def _unknown(name: str, stem: str) -> str:
     if quantity:
         base = name if name in QUANTITIES else stem
         units = one_of([f"{base}_{suffix}" for suffix in suffixes(quantity)])
-        kind = {"rate": "a rate", "angle": "an angle", "time": "a time"}[quantity]
+        kind = _KINDS[quantity]
         return (
             f"the column {plain(name)}: {base} is {kind} and needs its unit in the name: {units} "
             f"(rename with --column {base}_{suffixes(quantity)[0]}={plain(name)})"
@@ -173,7 +184,12 @@ def _check_complete(
         if stems.count(stem) > 1:
             same = [column.name for column in found if column.stem == stem]
             problems.append(Problem(where, f"{stem} is given twice: {' and '.join(same)}"))
-    joints, rates = ([stem for stem in kind if stem in stems] for kind in (_JOINTS, _RATES))
+    joints, rates, asked = (
+        [stem for stem in kind if stem in stems] for kind in (_JOINTS, _RATES, G_STEMS)
+    )
+    if asked:
+        _check_beside_g(joints, rates, asked, stems, where, problems)
+        return
     if joints and rates:
         what = f"holds both joint commands ({', '.join(joints)}) and body rates"
         problems.append(Problem(where, f"{what} ({', '.join(rates)}); choose with --column"))
@@ -184,10 +200,31 @@ def _check_complete(
     missing = [stem for stem in wanted if stem not in stems]
     if not joints and not rates:
         what = "has neither joint commands (t_s,arm_rpm,fork_deg,cab_deg) nor body rates"
-        problems.append(Problem(where, f"{what} (t_s,p_rad_s,q_rad_s,r_rad_s)"))
+        problems.append(Problem(where, f"{what} (t_s,p_rad_s,q_rad_s,r_rad_s) nor G (t_s,gz_g)"))
         return
     for stem in missing:
         units = one_of([f"{stem}_{suffix}" for suffix in suffixes(QUANTITIES[stem])])
+        problems.append(Problem(where, f"a column is missing: {units}"))
+
+
+def _check_beside_g(
+    joints: list[str],
+    rates: list[str],
+    asked: list[str],
+    stems: list[str],
+    where: str,
+    problems: list[Problem],
+) -> None:
+    """Say what cannot stand beside an asked G, and whether its times are missing."""
+    choose = "choose with --column"
+    if joints:
+        what = f"holds both joint commands ({', '.join(joints)}) and G ({', '.join(asked)})"
+        problems.append(Problem(where, f"{what}; {choose}"))
+    elif "r" in rates:
+        what = f"holds all body rates beside G ({', '.join(asked)}); {choose}: p and q can be"
+        problems.append(Problem(where, f"{what} followed beside it, and no joint is left for r"))
+    elif "t" not in stems and not problems:
+        units = one_of([f"t_{suffix}" for suffix in suffixes("time")])
         problems.append(Problem(where, f"a column is missing: {units}"))
 
 

@@ -14,9 +14,10 @@ from pydantic import ValidationError
 from des_cli.errors import DesError, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Machine, Seat
-from des_cli.model.profile import BodyRates, JointCommands, Profile
+from des_cli.model.profile import BodyRates, GCommand, JointCommands, Profile
 from des_cli.profiles_in.commands import check_commands, read_commands, read_time
 from des_cli.profiles_in.findings import Findings
+from des_cli.profiles_in.g_commands import read_g
 from des_cli.profiles_in.machine_yaml import (
     build_machine,
     is_machine_file,
@@ -34,9 +35,9 @@ from des_cli.profiles_in.source import decode, label_of, read_source
 from des_cli.profiles_in.wording import one_of
 from des_cli.profiles_in.yaml_nodes import Node, parse_yaml
 
-_COMMANDS = ("joints", "body_rates", "samples")
+_COMMANDS = ("joints", "body_rates", "g", "samples")
 _AnySection = TypeVar("_AnySection", bound=Section)
-Commands = tuple[Floats, JointCommands | BodyRates]
+Commands = tuple[Floats, JointCommands | BodyRates | GCommand]
 
 
 @dataclass
@@ -195,12 +196,15 @@ def read_seat(section: Any) -> Seat:
 def read_initial(section: Any, commands: Commands | None, findings: Findings) -> Floats:
     """Return the joint angles at the first sample, (3,) [rad]."""
     given = [section.si(joint) if section is not None else 0.0 for joint in JOINTS]
-    if commands is not None and isinstance(commands[1], JointCommands):
+    if commands is not None and not isinstance(commands[1], BodyRates):
+        by_g = isinstance(commands[1], GCommand)
+        leader = "the first G asks" if by_g else "its position command does"
         for joint in JOINTS[1:]:
             key = section.given_key(joint) if section is not None else None
             if key:
-                words = f"the {joint} starts where its position command does; leave this out"
+                words = f"the {joint} starts where {leader}; leave this out"
                 findings.add(["initial", key], words, of_key=True)
+    if commands is not None and isinstance(commands[1], JointCommands):
         given[1:] = commands[1].position[0].tolist()
     return np.array(given)
 
@@ -226,6 +230,9 @@ def document_commands(
             if sections["samples"] is None
             else _sampled(sections["samples"], reading, findings)
         )
+    if given == ["g"]:
+        usable = sections["g"] is not None and ("time" not in present or sections["time"])
+        return read_g(sections["g"], sections["time"], findings) if usable else None
     if "time" not in present:
         findings.add((), "time is missing: give time: {start_s: …, stop_s: …, step_s: …}")
     time = None if sections["time"] is None else read_time(sections["time"], findings)

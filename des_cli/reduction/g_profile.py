@@ -101,15 +101,8 @@ def follow_g(profile: Profile, command: GCommand) -> DesiredMotion:
         what = "asks for G, and the machine's arm does not turn about the vertical; command joints"
         raise UsageError([Problem(profile.name, what)])
     task = _Task(profile, chain, forms, _eased(profile.machine))
-    spline = _fit(task, command.sides)
-    motion = sample_spline(spline, profile.t)
+    motion = sample_spline(_fit(task, _with_rates(profile.t, command)), profile.t)
     response = respond(profile.machine, profile.seat, motion)
-    if command.rates is not None:
-        wanted = np.stack([command.rates.start, command.rates.end], axis=1)
-        rotation = washed_rotation(motion.step, wanted - response.seat_rate, command.washout)
-        spline = _fit(task, _turned(rotation, command.sides))
-        motion = sample_spline(spline, profile.t)
-        response = respond(profile.machine, profile.seat, motion)
     return DesiredMotion(
         motion=motion,
         singular_value=smallest_singular_value(body_jacobian(chain, motion.angle)),
@@ -221,9 +214,13 @@ def _asked_at(t: Floats, sides: Floats, times: Floats) -> Floats:
     return np.asarray((1.0 - u) * sides[k, 0] + u * sides[k, 1])
 
 
-def _turned(rotation: Floats, asked: Floats) -> Floats:
-    """Return an asked G along axes turned by rotations at the samples, (n - 1, 2, 3)."""
-    force = asked * PILOT
+def _with_rates(t: Floats, command: GCommand) -> Floats:
+    """Return the asked G along the axes that the rates beside it turn, (n - 1, 2, 3) [g]."""
+    if command.rates is None:
+        return command.sides
+    wanted = np.stack([command.rates.start, command.rates.end], axis=1)
+    rotation = washed_rotation(np.diff(t), wanted, command.washout)
+    force = command.sides * PILOT
     sides = (seen_turned(rotation[:-1], force[:, 0]), seen_turned(rotation[1:], force[:, 1]))
     return np.asarray(np.stack(sides, axis=1) * PILOT)
 
