@@ -9,6 +9,7 @@ import numpy as np
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.metric import METRICS, MetricKey
 from des_cli.model.motion import DesiredMotion
+from des_cli.results.asked_g import asked_g_sentence
 from des_cli.results.worse import find_worse
 
 BOUGHT = 0.05
@@ -50,14 +51,15 @@ def find_notices(asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
     -------
     list of str
         On a ride that got worse or feels different, budgets that let the commands
-        chatter, a damped inverse, a replaced desired motion, a cross-coupling that
-        grew or was bought with another or was not there, and a solver that stopped
-        short of its tolerance.
+        chatter, how near the machine comes to an asked G, a damped inverse, a
+        replaced desired motion, a cross-coupling that grew or was bought with another
+        or was not there, and a solver that stopped short of its tolerance.
     """
     found = [
         _worse(metrics),
         _felt(metrics),
         _ill_posed(metrics),
+        asked_g_sentence(asked.g_offset),
         _damped(asked),
         _replaced(metrics),
         _nothing(metrics),

@@ -33,7 +33,7 @@ from des_cli.solver.quadratic import minimise_quadratic
 from des_cli.solver.spline import Ends, SplineGrid
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
-CALM = 0.01
+CALM = 0.05
 """What a jerk of a joint costs, mu [g s]: the G error that a jerk of the joint's whole
 acceleration limit in a second is worth. It determines what the force does not."""
 
