@@ -43,10 +43,10 @@ UNLIMITED_ACCELERATION = 5.0
 G_TOLERANCE = 1e-3
 """Largest change of G at any point [g] by a step after which a search ends."""
 
-FEWEST_GAIN = 1e-5
+FEWEST_GAIN = 1e-4
 """Or a relative decrease of the cost below this, twice in a row."""
 
-MOST_STEPS = 40
+MOST_STEPS = 25
 
 DAMPING = 1e-3
 """Of the first step: weight on the squared change of the rates, (g s/rad)^2."""
@@ -96,7 +96,10 @@ class Magnitude:
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """The part of f across the asked direction e: ``f - e (e . f)``.
+    """What is missing to the asked direction e of a force as long: ``f - |f| e``.
+
+    For small errors it is the part of f across e; the opposite of e, which has no such
+    part, is the worst.
 
     Parameters
     ----------
@@ -107,13 +110,14 @@ class Direction:
     unit: Floats
 
     def value(self, force: Floats) -> Floats:
-        """Return the force across e, (3, points)."""
-        return np.asarray(force - self.unit * np.sum(self.unit * force, axis=0))
+        """Return f - |f| e, (3, points)."""
+        return np.asarray(force - self.unit * np.linalg.norm(force, axis=0))
 
     def slope(self, force: Floats, slope: Floats, at: slice) -> Floats:
-        """Return the slopes across e, (v, 3, m)."""
-        unit = self.unit[:, at]
-        return np.asarray(slope - unit * np.sum(unit * slope, axis=1, keepdims=True))
+        """Return the slopes of f - |f| e, (v, 3, m)."""
+        along = force[:, at] / np.maximum(np.linalg.norm(force[:, at], axis=0), NO_G)
+        longer = np.sum(along * slope, axis=1, keepdims=True)
+        return np.asarray(slope - self.unit[:, at] * longer)
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 First a guess: the arm's rate that would hold each asked G, no faster than the arm can
 change it, and the directions of the force which that makes. Then, in turns until neither
-changes the G, `reduction.g_fit` finds the arm that comes nearest to the asked magnitude,
-and the fork and cab that turn the force which is really there, tangential and relative
-parts included, into the asked direction. Where the arm lags, only the magnitude is off.
+changes the G, `reduction.g_fit` finds the fork and cab that turn the force which is really
+there, tangential and relative parts included, into the asked direction, and the arm that
+comes nearest to the asked magnitude. Where the arm lags, only the magnitude is off.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 from des_cli.errors import Problem, UsageError
 from des_cli.kinematics.chain import Chain, chain_of
 from des_cli.kinematics.g_motion import (
+    NO_G,
     PILOT,
     asked_directions,
     force_of_arm,
@@ -34,7 +35,6 @@ from des_cli.model.profile import GCommand, Profile
 from des_cli.model.response import Response
 from des_cli.reduction.executable import (
     CLEAR,
-    CLEAR_ANGLE,
     ExecutableSpline,
     fit_executable,
     sample_spline,
@@ -53,7 +53,7 @@ GRIDS = 2
 """Grids of knots, each twice as fine as the one before it: most turns are taken on the
 coarsest."""
 
-TURNS = 12
+TURNS = 8
 """Turns of arm and gimbals at most; a turn leaves of the error about the share that the
 seat's offset from the gimbals has of the arm's length."""
 
@@ -157,20 +157,30 @@ def _fit(task: _Task, asked: Floats) -> ExecutableSpline:
 def _in_turns(task: _Task, grid: SplineGrid, control: Floats, asked: Floats) -> Floats:
     """Return the control points at which arm and gimbals suit each other."""
     there = _asked_at(task.t, asked, Windows(grid, SEAT_VARIABLES).times())
-    # less than gravity is made by no arm: to ask for it would only make the search wander
-    least = task.machine.gravity / STANDARD_GRAVITY_M_S2
-    magnitude = Magnitude(np.maximum(np.linalg.norm(there, axis=1), least))
     direction = Direction(asked_directions(there).T)
     arm, gimbals = _holding("fork", "cab"), _holding("arm")
     before = np.zeros((3, len(there)))
     for _ in range(TURNS):
-        found = fit_g(grid, control, task.forms, magnitude, task.limits, arm)
-        found = fit_g(grid, found.control, task.forms, direction, task.limits, gimbals)
-        control = found.control
+        found = fit_g(grid, control, task.forms, direction, task.limits, gimbals)
         if np.max(np.abs(found.force - before)) < G_TOLERANCE:
             break
         before = found.force
-    return control
+        magnitude = _magnitude_along(found.force, (there * PILOT).T, task.machine.gravity)
+        control = fit_g(grid, found.control, task.forms, magnitude, task.limits, arm).control
+    return found.control
+
+
+def _magnitude_along(force: Floats, asked: Floats, gravity: float) -> Magnitude:
+    """Return what the arm is to make of forces (3, points) beside the asked ones [g].
+
+    Of a force whose direction is given, the length nearest to the asked force is that of
+    the latter's projection: the asked magnitude where the direction is as asked, less where
+    the gimbals cannot reach it. Less than gravity [m/s^2] is made by no arm, and to ask for
+    it would only make the search wander.
+    """
+    length = np.maximum(np.linalg.norm(force, axis=0), NO_G)
+    along = np.sum(force * asked, axis=0) / length
+    return Magnitude(np.maximum(along, gravity / STANDARD_GRAVITY_M_S2))
 
 
 def _first_guess(task: _Task, grid: SplineGrid, asked: Floats) -> Floats:
@@ -230,7 +240,7 @@ def _eased(machine: Machine) -> tuple[JointLimits, ...]:
     return tuple(
         replace(
             limit,
-            angle=limit.angle * (1.0 - CLEAR_ANGLE),
+            angle=limit.angle * (1.0 - CLEAR),
             rate=limit.rate * (1.0 - CLEAR),
             acceleration=limit.acceleration * (1.0 - CLEAR),
             jerk=limit.jerk * (1.0 - CLEAR),

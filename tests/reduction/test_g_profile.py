@@ -152,6 +152,22 @@ def test_a_roll_rate_is_followed_at_first_and_then_gives_way() -> None:
     assert found.g_offset.roll_rate_rms is not None
 
 
+def test_a_direction_out_of_reach_is_made_as_near_as_gravity_lets_it() -> None:
+    # with this seat Gx is along the cab's axis, where there is gravity alone
+    t = np.arange(0.0, 10.01, 0.02)
+    asked = np.column_stack([np.full_like(t, 2.0), 0 * t, np.full_like(t, 3.0)])
+    _, response, _ = follow(profile_of(asked, t))
+    held = response.seat_g[len(t) // 2, 0]
+    assert held[0] == pytest.approx(1.0, abs=0.02)
+    assert held[1] == pytest.approx(0.0, abs=0.1)
+    assert held[2] == pytest.approx(3.0, abs=0.5)
+
+
+def test_a_turn_upside_down_ends_where_it_is_asked() -> None:
+    _, response, _ = follow(along_spine((0, 1.4), (5, 1.4), (7, -1.5), (15, -1.5)))
+    np.testing.assert_allclose(response.seat_g[-1, 1], [0.0, 0.0, -1.5], atol=0.05)
+
+
 def test_a_tilted_arm_is_refused_in_words() -> None:
     tilted = Machine("tilted", (DHRow(alpha=0.2), *DES.rows), DES.limits)
     with pytest.raises(UsageError, match="does not turn about the vertical"):
