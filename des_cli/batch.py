@@ -18,6 +18,7 @@ from des_cli.errors import DesError, ExitCode, FileAccessError, Problem, UsageEr
 from des_cli.failure import Failure
 from des_cli.job import STANDARD_STREAM, Job, JobResult
 from des_cli.model.coriolis import COMPONENTS
+from des_cli.model.stage import OnStage, untold
 
 # What needs numpy is imported when a job runs: a worker must be able to set its
 # number of BLAS threads before that, and a rejected command line needs none.
@@ -30,7 +31,11 @@ if TYPE_CHECKING:
 _NO_TABLE = (ExitCode.PROFILE, ExitCode.NO_SOLUTION, ExitCode.NOT_RELEASED)
 
 
-def run_job(job: Job, on_iteration: Callable[[Iteration], None] | None = None) -> JobResult:
+def run_job(
+    job: Job,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
+) -> JobResult:
     """Load a profile, reduce it, require its release, and write the output.
 
     Whatever fails becomes part of the result, so that one profile of a batch
@@ -42,8 +47,10 @@ def run_job(job: Job, on_iteration: Callable[[Iteration], None] | None = None) -
     job : Job
     on_iteration : callable, optional
         Called with each of the solver's iterations.
+    on_stage : callable, optional
+        Called with a few words for what is done next.
     """
-    result = _run_job(job, on_iteration)
+    result = _run_job(job, on_iteration, on_stage)
     if result.exit_code not in _NO_TABLE or not job.overwrite or job.dry_run:
         return result
     try:
@@ -58,6 +65,8 @@ def run_jobs(
     *,
     keep_going: bool = False,
     on_iteration: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
+    on_finished: Callable[[], None] = lambda: None,
 ) -> Iterator[JobResult]:
     """Yield the result of every job, in the order of the jobs.
 
@@ -69,18 +78,28 @@ def run_jobs(
     keep_going : bool
         Whether to go on after a failed job; without it no job is begun that
         has not begun, and none of those has a result.
-    on_iteration : callable, optional
+    on_iteration, on_stage : callable, optional
         For jobs that run here.
+    on_finished : callable, optional
+        Called whenever a job has ended, in any order and from any thread.
     """
     if executor is None:
         for job in jobs:
-            result = run_job(job, on_iteration)
+            result = run_job(job, on_iteration, on_stage)
+            on_finished()
             yield result
             if result.exit_code and not keep_going:
                 return
         return
+
+    def note(future: Future[JobResult]) -> None:
+        if not future.cancelled():
+            on_finished()
+
     futures = [executor.submit(run_job, job) for job in jobs]
     try:
+        for future in futures:
+            future.add_done_callback(note)
         for job, future in zip(jobs, futures, strict=True):
             # What had begun when another job failed is finished and told.
             if future.cancelled():
@@ -128,9 +147,14 @@ def require_distinct_names(jobs: Iterable[Job]) -> None:
         raise UsageError(problems)
 
 
-def _run_job(job: Job, on_iteration: Callable[[Iteration], None] | None) -> JobResult:
+def _run_job(
+    job: Job,
+    on_iteration: Callable[[Iteration], None] | None,
+    on_stage: OnStage,
+) -> JobResult:
     name = ""
     try:
+        on_stage(f"reading {job.source}")
         profile = load_job(job)
         name = profile.name
         _require_consistent(profile)
@@ -140,7 +164,7 @@ def _run_job(job: Job, on_iteration: Callable[[Iteration], None] | None) -> JobR
         _refuse_existing(job, target)
         if job.dry_run:
             return JobResult(job.source, name, written=str(target), state="planned")
-        return _reduce_and_write(job, profile, target, on_iteration)
+        return _reduce_and_write(job, profile, target, on_iteration, on_stage)
     except BrokenPipeError:
         raise
     except Exception as error:
@@ -159,10 +183,11 @@ def _reduce_and_write(
     profile: Profile,
     target: Path,
     on_iteration: Callable[[Iteration], None] | None,
+    on_stage: OnStage,
 ) -> JobResult:
     from des_cli.pipeline import reduce_profile
 
-    run = reduce_profile(profile, on_iteration=on_iteration)
+    run = reduce_profile(profile, on_iteration=on_iteration, on_stage=on_stage)
     told: dict[str, Any] = {
         "notices": run.notices,
         "violations": tuple(str(violation) for violation in run.violations),
@@ -172,6 +197,7 @@ def _reduce_and_write(
     }
     try:
         run.require_release()
+        on_stage("plots and tables" if job.plots and job.table_format is None else "tables")
         table = _write(job, run, target)
     except DesError as error:
         # What the solver found explains the refusal: it is told all the same.

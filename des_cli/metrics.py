@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.response import respond
 from des_cli.model.arrays import Floats
 from des_cli.model.coriolis import COMPONENTS, Component
 from des_cli.model.machine import JOINTS, Seat
@@ -18,10 +17,11 @@ from des_cli.model.profile import Profile
 from des_cli.model.response import Response
 from des_cli.model.run import Violation
 from des_cli.model.solution import Solution
-from des_cli.reduction.baseline import Baselines, joint_deviation
+from des_cli.reduction.baseline import Baselines
 from des_cli.reduction.fidelity import Deviation
 from des_cli.results.asked_g import asked_g_metrics
-from des_cli.results.felt import felt_metrics, relative_error, rms, rms_error, tilt_error
+from des_cli.results.changes import condition_metrics, executable_metrics
+from des_cli.results.felt import felt_metrics, rms, tilt_error
 from des_cli.results.joints import joint_metrics
 
 
@@ -30,12 +30,13 @@ class Measured:
     """Everything that the metrics are taken of.
 
     ``before`` and ``after`` are the responses of the motion that the profile asks
-    for, the record, and of the modified one; ``desired`` is the executable motion
-    that the solver started from.
+    for, the record, and of the modified one; ``target`` is what conditioning made of
+    it, and ``desired`` the executable motion that the solver started from.
     """
 
     profile: Profile
     asked: DesiredMotion
+    target: Motion
     desired: Motion
     seat: Seat
     solution: Solution
@@ -56,7 +57,8 @@ def measure(run: Measured) -> dict[str, Any]:
         | {"objective": {"reduction": run.baselines.reduction}},
         "fidelity": fidelity_metrics(run),
         "felt": felt_metrics(run.asked.motion, run.before, run.after),
-        "executable": _executable(run),
+        "changes": condition_metrics(run.profile, run.asked, run.target),
+        "executable": executable_metrics(run.profile, run.target, run.desired),
         "baseline": {
             "report_sweep": {
                 "reduction": run.baselines.sweep_reduction,
@@ -124,6 +126,7 @@ def _solver(profile: Profile, solution: Solution) -> dict[str, Any]:
         "objective": reduction.objective,
         "optimise": list(reduction.optimise),
         "budget": {b.metric: b.most for b in reduction.budget} or None,
+        "allow_change": reduction.allow_change,
         "status": solution.status,
         "converged": solution.converged,
         "iterations": solution.iterations,
@@ -186,7 +189,9 @@ def fidelity_metrics(run: Measured) -> dict[str, Any]:
     square = integrate_sides(step, (modified.angle_sides - record.angle_sides) ** 2)
     machine = run.profile.machine
     chains = (chain_of(machine, run.profile.seat), chain_of(machine, run.seat))
-    deviation = Deviation(record, modified, before, after, chains, run.solution.control)
+    deviation = Deviation(
+        record, modified, before, after, chains, run.solution.control, run.asked.shortfall
+    )
     return {
         **{key: _number(deviation.value(key)) for key in METRICS},
         "joint_rms_rad": _by_joint(np.sqrt(square / step.sum())),
@@ -201,25 +206,6 @@ def fidelity_metrics(run: Measured) -> dict[str, Any]:
 def _number(value: float) -> float | None:
     """Return None for what is not a number: a free motion has no factors."""
     return None if np.isnan(value) else value
-
-
-def _executable(run: Measured) -> dict[str, Any]:
-    """Return what keeping the limits alone cost against the motion that was asked for."""
-    record, desired, before = run.asked.motion, run.desired, run.before
-    replaced = desired is not record
-    profile = run.profile
-    after = respond(profile.machine, profile.seat, desired) if replaced else before
-    step = record.step
-    return {
-        "replaced": replaced,
-        "joint_change_relative": joint_deviation(record, desired),
-        "joint_change_max_rad": _by_joint(np.max(np.abs(desired.angle - record.angle), axis=0)),
-        "seat_rate_deviation_relative": relative_error(step, before.seat_rate, after.seat_rate),
-        "seat_g_rms_error_g": rms_error(step, before.seat_g, after.seat_g),
-        "seat_angular_acceleration_rms_error_rad_s2": rms_error(
-            step, before.seat_angular_acceleration, after.seat_angular_acceleration
-        ),
-    }
 
 
 def _by_joint(values: Floats, unit: str = "") -> dict[str, float]:

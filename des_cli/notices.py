@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from des_cli.kinematics.noise import suggest_smoothing
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.metric import METRICS, MetricKey
 from des_cli.model.motion import DesiredMotion
+from des_cli.model.profile import Profile
 from des_cli.results.asked_g import asked_g_sentence
 from des_cli.results.worse import find_worse
 
@@ -37,11 +39,12 @@ NOTICEABLE = 1e-3
 """Change of a desired angle [rad] by the limits that is worth a sentence."""
 
 
-def find_notices(asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
+def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
     """Return the sentences of a run.
 
     Parameters
     ----------
+    profile : Profile
     asked : DesiredMotion
         What the profile asks for.
     metrics : dict
@@ -50,12 +53,14 @@ def find_notices(asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
     Returns
     -------
     list of str
-        On a ride that got worse or feels different, budgets that let the commands
-        chatter, how near the machine comes to an asked G, a damped inverse, a
-        replaced desired motion, a cross-coupling that grew or was bought with another
-        or was not there, and a solver that stopped short of its tolerance.
+        On what reading changed, a noisy record, a ride that got worse or feels different,
+        budgets that let the commands chatter, how near the machine comes to an asked G, a
+        damped inverse, a replaced desired motion, a cross-coupling that grew or was bought
+        with another or was not there, and a solver that stopped short of its tolerance.
     """
     found = [
+        *profile.remarks,
+        suggest_smoothing(profile, asked),
         _worse(metrics),
         _felt(metrics),
         _ill_posed(metrics),
@@ -90,8 +95,13 @@ def _replaced(metrics: dict[str, Any]) -> str:
     moved = [f"{joint} {value:.3g} rad" for joint, value in change.items() if value > NOTICEABLE]
     if not moved:
         return ""
+    why = (
+        "breaks limits; it was replaced by the nearest one inside them"
+        if metrics["executable"]["breaks_limits"]
+        else "was made consistent: its angles are the integrals of its rates"
+    )
     return (
-        "the desired motion breaks limits; it was replaced by the nearest one inside them, "
+        f"the desired motion {why}, "
         f"changed by up to {', '.join(moved)}; what is felt is measured against the profile"
     )
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.response import respond
+from des_cli.kinematics.response import respond, respond_as_asked
+from des_cli.kinematics.smoothing import smooth_command
 from des_cli.metrics import Measured, measure
-from des_cli.model.motion import Motion
+from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Check, Run
 from des_cli.model.solution import Iteration
+from des_cli.model.stage import OnStage, untold
 from des_cli.notices import find_notices
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.consistency import require_consistent
@@ -19,11 +22,15 @@ from des_cli.reduction.desired import find_desired
 from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion
+from des_cli.verify.claim import Claim
 from des_cli.verify.verify import verify
 
 
 def reduce_profile(
-    profile: Profile, *, on_iteration: Callable[[Iteration], None] | None = None
+    profile: Profile,
+    *,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
 ) -> Run:
     """Reduce the Coriolis of one maneuver.
 
@@ -32,6 +39,8 @@ def reduce_profile(
     profile : Profile
     on_iteration : callable, optional
         Called with each line of the solver's log.
+    on_stage : callable, optional
+        Called with a few words for what is done next, at each step that may take long.
 
     Returns
     -------
@@ -45,15 +54,20 @@ def reduce_profile(
         If the reduction asks for things that exclude each other.
     """
     require_consistent(profile.reduction, profile.name)
+    on_stage("desired motion")
     asked = find_desired(profile)
-    found = find_motion(profile, asked.motion, on_iteration)
+    target = _conditioned(profile, asked)
+    found = find_motion(profile, asked, target, on_iteration, on_stage)
+    on_stage("baselines")
     found, led = _with_leads(profile, found)
+    profile = replace(profile, reduction=replace(profile.reduction, budget=found.budgets))
     modified = found.solution.modified
-    before = respond(profile.machine, profile.seat, asked.motion)
+    before = respond_as_asked(profile.machine, profile.seat, asked)
     after = respond(profile.machine, found.seat, modified)
     measured = Measured(
         profile=profile,
         asked=asked,
+        target=target,
         desired=found.desired,
         seat=found.seat,
         solution=found.solution,
@@ -70,7 +84,8 @@ def reduce_profile(
         baselines=compare(found.problem, modified, chain_of(profile.machine, found.seat)),
     )
     metrics = measure(measured)
-    metrics["notices"] = find_notices(asked, metrics)
+    metrics["notices"] = find_notices(profile, asked, metrics)
+    on_stage("verification")
     return Run(
         profile=profile,
         asked=asked,
@@ -80,7 +95,7 @@ def reduce_profile(
         commands=led,
         before=before,
         after=after,
-        checks=_checks(profile, asked.motion, found, led),
+        checks=_checks(profile, asked, target, found, led),
         violations=measured.violations,
         metrics=metrics,
         notices=tuple(metrics["notices"]),
@@ -99,11 +114,29 @@ def _with_leads(profile: Profile, found: Found) -> tuple[Found, Motion]:
     return found, led.motion
 
 
+def _conditioned(profile: Profile, asked: DesiredMotion) -> Motion:
+    """Return what the reduction begins from: the record, smoothed where the profile says so."""
+    cutoff_hz = profile.smooth_cutoff_hz
+    if math.isinf(cutoff_hz):
+        return asked.motion
+    smooth = smooth_command(profile.t, profile.command, cutoff_hz)
+    return find_desired(replace(profile, command=smooth)).motion
+
+
 def _checks(
-    profile: Profile, reference: Motion, found: Found, commands: Motion
+    profile: Profile, asked: DesiredMotion, target: Motion, found: Found, commands: Motion
 ) -> tuple[Check, ...]:
     if not found.solution.usable:
         return ()
-    return verify(
-        profile, reference, found.desired, found.seat, found.solution, found.posed, commands
+    claim = Claim(
+        profile=profile,
+        asked=asked.motion,
+        desired=found.desired if found.posed is None else found.posed.desired,
+        seat=found.seat,
+        solution=found.solution,
+        posed=found.posed,
+        commands=commands,
+        target=target,
+        shortfall=asked.shortfall,
     )
+    return verify(claim)

@@ -15,6 +15,7 @@ from des_cli.batch import load_job
 from des_cli.errors import DesError, ExitCode, FileAccessError, Problem
 from des_cli.failure import Failure
 from des_cli.job import Job
+from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import TradePoint
 
 # What needs numpy is imported when a job runs, as in `batch`.
@@ -93,6 +94,7 @@ def run_points(
     jobs: Sequence[PointJob],
     executor: Executor | None = None,
     on_iteration: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
 ) -> Iterator[PointResult]:
     """Yield the result of every job, in the order of the jobs.
 
@@ -101,12 +103,12 @@ def run_points(
     jobs : sequence of PointJob
     executor : Executor, optional
         Runs them; without one they run here, one after the other.
-    on_iteration : callable, optional
+    on_iteration, on_stage : callable, optional
         For jobs that run here.
     """
     if executor is None:
         for job in jobs:
-            yield run_point(job, on_iteration)
+            yield run_point(job, on_iteration, on_stage)
         return
     futures = [executor.submit(run_point, job) for job in jobs]
     try:
@@ -118,7 +120,9 @@ def run_points(
 
 
 def run_point(
-    job: PointJob, on_iteration: Callable[[Iteration], None] | None = None
+    job: PointJob,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
 ) -> PointResult:
     """Compute the point of a job, or the points of the baselines.
 
@@ -137,8 +141,9 @@ def run_point(
 
         profile = load_job(job.job)
         if job.baselines:
+            on_stage("baselines")
             return PointResult(tuple(baseline_points(profile, job.weights)))
-        point = trade_point(profile, note)
+        point = trade_point(profile, note, on_stage)
         # of several budgets, only the job knows which one is swept
         return PointResult((replace(point, swept=job.swept, value=job.value),), tuple(log))
     except Exception as error:

@@ -13,13 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from des_cli.kinematics.response import respond
+from des_cli.kinematics.response import respond, respond_as_asked
 from des_cli.metrics import Measured, measure
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Run
 from des_cli.model.solution import Iteration, Solution
+from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import BASELINE, SOLVED, TradePoint
 from des_cli.pipeline import reduce_profile
 from des_cli.reduction.baseline import compare
@@ -39,7 +40,9 @@ the regularisation beside a budget costs less than that."""
 
 
 def trade_point(
-    profile: Profile, on_iteration: Callable[[Iteration], None] | None = None
+    profile: Profile,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
 ) -> TradePoint:
     """Reduce a profile and return its point on the trade-off curve.
 
@@ -49,13 +52,15 @@ def trade_point(
         With a budget, or a weight r2, which is what the point is named after.
     on_iteration : callable, optional
         Called with each line of the solver's log.
+    on_stage : callable, optional
+        Called with what is done next.
 
     Raises
     ------
     UsageError
         If the reduction asks for things that exclude each other.
     """
-    run = reduce_profile(profile, on_iteration=on_iteration)
+    run = reduce_profile(profile, on_iteration=on_iteration, on_stage=on_stage)
     wanted = profile.reduction
     swept, value = (
         (wanted.budget[0].metric, wanted.budget[0].most)
@@ -106,7 +111,7 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
         budget=(),
     )
     profile = replace(profile, reduction=wanted)
-    problem = pose_problem(profile, desired, asked.motion)
+    problem = pose_problem(profile, desired, asked)
     points = []
     for r2 in weights or (_weight(wanted.r2),):
         weighed = replace(problem, r2=np.array([r2]))
@@ -209,8 +214,8 @@ def _measure(
     profile: Profile, asked: DesiredMotion, problem: Problem, solution: Solution
 ) -> dict[str, Any]:
     """Measure a baseline as the pipeline measures an optimum."""
-    motions = (asked.motion, solution.modified)
-    before, after = (respond(profile.machine, profile.seat, motion) for motion in motions)
+    before = respond_as_asked(profile.machine, profile.seat, asked)
+    after = respond(profile.machine, profile.seat, solution.modified)
     violations = find_violations(profile.machine, solution.modified, "modified")
     against = compare(problem, solution.modified)
     return _measures(
@@ -218,6 +223,7 @@ def _measure(
             Measured(
                 profile=profile,
                 asked=asked,
+                target=asked.motion,
                 desired=problem.desired,
                 seat=profile.seat,
                 solution=solution,

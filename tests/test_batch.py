@@ -59,7 +59,7 @@ def pretend(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Jobs that only tell that they ran; those called bad fail."""
     ran: list[str] = []
 
-    def run(job: Job, on_iteration: Callable[..., None] | None = None) -> JobResult:
+    def run(job: Job, *told: Callable[..., None]) -> JobResult:
         ran.append(job.source)
         if job.source == "bad":
             return JobResult.failed(job, ProfileError.of("bad"))
@@ -74,11 +74,18 @@ JOBS = [Job("a"), Job("bad"), Job("b"), Job("c")]
 
 @pytest.mark.parametrize("threads", [0, 1, 3])
 def test_results_come_in_the_order_of_the_jobs(pretend: list[str], threads: int) -> None:
+    ended: list[None] = []
+
+    def on_finished() -> None:
+        ended.append(None)
+
     if not threads:
-        results = list(run_jobs(JOBS, keep_going=True))
+        results = list(run_jobs(JOBS, keep_going=True, on_finished=on_finished))
     else:
         with ThreadPoolExecutor(threads) as executor:
-            results = list(run_jobs(JOBS, executor, keep_going=True))
+            jobs = run_jobs(JOBS, executor, keep_going=True, on_finished=on_finished)
+            results = list(jobs)
+    assert len(ended) == 4
     assert [result.source for result in results] == ["a", "bad", "b", "c"]
     assert [result.exit_code for result in results] == [0, 3, 0, 0]
 
@@ -93,7 +100,7 @@ def test_with_a_pool_what_had_begun_is_told_and_nothing_else_begins(
 ) -> None:
     begun, go_on = threading.Event(), threading.Event()
 
-    def run(job: Job, on_iteration: Callable[..., None] | None = None) -> JobResult:
+    def run(job: Job, *told: Callable[..., None]) -> JobResult:
         if job.source == "bad":
             assert begun.wait(30)
             return JobResult.failed(job, ProfileError.of("bad"))

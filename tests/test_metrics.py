@@ -38,10 +38,11 @@ CONTRACT = {
     },
     "felt": {"seat_rate", "seat_angular_acceleration", "seat_g"},
     "executable": {
-        "replaced", "joint_change_relative", "joint_change_max_rad",
+        "replaced", "breaks_limits", "joint_change_relative", "joint_change_max_rad",
         "seat_rate_deviation_relative", "seat_g_rms_error_g",
-        "seat_angular_acceleration_rms_error_rad_s2",
+        "seat_angular_acceleration_rms_error_rad_s2", "attitude_error_max_deg",
     },
+    "changes": {"damping", "smoothing"},
     "baseline": {"report_sweep", "constant_p"},
     "limits": {"desired", "modified"},
     "singularity": {"min_abs_cos_fork", "damped_samples", "max_residual_rad_s"},
@@ -341,12 +342,15 @@ def test_what_is_felt_is_measured_against_the_record():
 def test_a_motion_that_is_not_replaced_costs_nothing(run):
     assert run.metrics["executable"] == {
         "replaced": False,
+        "breaks_limits": True,  # its cab's rate steps, and limits are only warned of
         "joint_change_relative": 0.0,
         "joint_change_max_rad": dict.fromkeys(JOINTS, 0.0),
         "seat_rate_deviation_relative": 0.0,
         "seat_g_rms_error_g": 0.0,
         "seat_angular_acceleration_rms_error_rad_s2": 0.0,
+        "attitude_error_max_deg": 0.0,
     }
+    assert run.metrics["changes"] == {"damping": None, "smoothing": None}
 
 
 def test_jerk_and_sign_changes(run):

@@ -261,3 +261,48 @@ def test_what_excludes_something_else_is_refused_all_at_once():
     assert "per-joint" in whats[1]
     with pytest.raises(UsageError, match="r1"):
         reduce_profile(cobra(r1=np.zeros((3, 3))))
+
+
+def held_rates(peak: float = 9.0, **reduction):
+    """Recorded yaw whose peak is beyond the arm's rate limit for some tenths of a second."""
+    t = np.linspace(0.0, 6.0, 301)
+
+    def at(times):
+        bump = np.exp(-(((times - 3.0) / 0.8) ** 2))
+        return np.outer(peak * bump, [0.0, 0.0, 1.0]) + np.outer(np.sin(times), [0.1, 0.05, 0.0])
+
+    command = BodyRates(at(t[:-1]), at(0.5 * (t[:-1] + t[1:])), at(t[1:]))
+    fast = tuple(replace(x, acceleration=20.0, jerk=200.0) for x in DES.limits)
+    machine = replace(DES, limits=fast)
+    return Profile("yaw", t, command, machine, reduction=Reduction(**reduction))
+
+
+def test_a_rate_that_is_held_counts_as_changed():
+    """The seat rate's deviation is from the record, whatever the joints could make of it."""
+    profile = held_rates()
+    refused = reduce_profile(profile)
+    with pytest.raises(NotReleasedError, match="the record is changed by") as error:
+        refused.require_release()
+    assert error.value.exit_code is ExitCode.NOT_RELEASED
+    assert refused.solution.iterations == 0
+
+    allowed = reduce_profile(held_rates(allow_change=0.5))
+    allowed.require_release()
+    assert all(check.ok for check in allowed.checks)
+    command, modified = profile.command, allowed.after.seat_rate
+    recorded = np.stack([command.start, command.end], axis=1)
+    share = np.sqrt(np.sum((modified - recorded) ** 2) / np.sum(recorded**2))  # a steady grid
+    found = allowed.metrics["fidelity"]["seat_rate_deviation_relative"]
+    assert found == pytest.approx(share, rel=1e-9)
+    damping = allowed.metrics["changes"]["damping"]["seat_rate_deviation_relative"]
+    assert damping > 0.1
+    assert damping < found < np.hypot(damping, 0.1) + 0.02
+    most = allowed.metrics["solver"]["budget"]["seat_rate_deviation_relative"]
+    assert found <= most
+
+
+def test_a_record_that_is_made_is_not_changed():
+    run = reduce_profile(held_rates(peak=1.0))
+    run.require_release()
+    assert run.asked.shortfall is None
+    assert run.metrics["changes"]["damping"] is None

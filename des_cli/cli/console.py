@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING
 
 import click
 
+from des_cli.cli.status_line import StatusLine
 from des_cli.errors import ExitCode
 from des_cli.failure import Failure
 
@@ -44,6 +46,7 @@ class Console:
         self.verbosity = NORMAL
         self.color = False
         self._log_open = False
+        self._line = StatusLine(None)
         self.choose_color("auto")
 
     def choose_color(self, choice: str) -> None:
@@ -62,19 +65,53 @@ class Console:
     def say(self, text: str) -> None:
         """Print unless quiet."""
         if self.verbosity > QUIET:
-            click.echo(text, err=True, color=self.color)
+            self._echo(text)
 
     def warn(self, lines: Iterable[str], style: str = "warning") -> None:
         """Print what nobody may miss, quiet or not."""
         for line in lines:
-            click.echo(self.style(line, style), err=True, color=self.color)
+            self._echo(self.style(line, style))
+
+    def _echo(self, text: str, *, nl: bool = True) -> None:
+        with self.aside():
+            click.echo(text, err=True, color=self.color, nl=nl)
+
+    @contextmanager
+    def working(self, total: int = 1, noun: str = "profiles") -> Iterator[StatusLine]:
+        """Offer a line that tells what is being done, on a terminal and unless quiet.
+
+        Parameters
+        ----------
+        total : int
+            How many there are to do.
+        noun : str
+            What they are, in the plural.
+        """
+        wanted = self.verbosity > QUIET and os.environ.get("TERM") != "dumb"
+        terminal = wanted and sys.stderr is not None and sys.stderr.isatty()
+        with StatusLine(sys.stderr if terminal else None, total=total, noun=noun) as self._line:
+            yield self._line
+
+    def follow(self, line: StatusLine, *, log: bool) -> Callable[[Iteration], None]:
+        """Return what takes a solver's iterations: the line, and the log if it is wanted."""
+
+        def note(iteration: Iteration) -> None:
+            line.iteration(iteration)
+            if log:
+                self.iteration(iteration)
+
+        return note
+
+    def aside(self) -> AbstractContextManager[None]:
+        """Keep that line away while something is printed, also on stdout."""
+        return self._line.hidden()
 
     def failure(self, failure: Failure) -> None:
         """Print how something failed; a traceback only when asked for."""
         lines = failure.lines
         if failure.exit_code == ExitCode.BUG:
             if self.verbosity >= DEBUG or os.environ.get(DEBUG_VARIABLE):
-                click.echo(failure.traceback, err=True, nl=False)
+                self._echo(failure.traceback, nl=False)
             else:
                 lines = tuple(f"{line} ({DEBUG_VARIABLE}=1 prints where)" for line in lines)
         self.warn(lines, "error")

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
-from des_cli.cli.options import TABLE_FORMATS, read_stdin, setting_options, verbosity_options
+from des_cli.cli.options import (
+    TABLE_FORMATS,
+    machine_option,
+    machine_settings,
+    read_stdin,
+    setting_options,
+    verbosity_options,
+)
 from des_cli.cli.state_options import in_si, option_name, state_options
 from des_cli.cli.stdout import write_data
 from des_cli.job import STANDARD_STREAM, Job, TableFormat
@@ -29,11 +36,7 @@ Examples:
 )
 @click.argument("profile", metavar="[PROFILE]", required=False)
 @state_options
-@click.option(
-    "--machine",
-    metavar="NAME|FILE",
-    help="A built-in machine or a YAML file.  [default: des]",
-)
+@machine_option
 @setting_options
 @click.option(
     "-f",
@@ -65,11 +68,12 @@ def kinematics(
     if form == "parquet" and on_terminal:
         raise click.UsageError("parquet is not for a terminal: redirect stdout.")
     if profile is not None:
-        _refuse_beside_profile(given, machine)
+        _refuse_beside_profile(given)
+        settings = (*machine_settings(machine), *settings)
         write_data(_motion(profile, settings, columns, form))
         return
     if settings or columns:
-        raise click.UsageError("--set and --column change a PROFILE, and none is given.")
+        raise click.UsageError("--set, --column and the like change a PROFILE, and none is given.")
     write_data(_state(in_si(given), machine or "des", form))
 
 
@@ -119,10 +123,10 @@ def _motion(
     return encode_states(report, cast(TableFormat, form), t)
 
 
-def _refuse_beside_profile(given: Mapping[str, float], machine: str | None) -> None:
-    options = [option_name(name) for name in given] + (["--machine"] if machine is not None else [])
-    if options:
+def _refuse_beside_profile(given: Mapping[str, float]) -> None:
+    if given:
+        options = ", ".join(option_name(name) for name in given)
         raise click.UsageError(
-            f"{', '.join(options)}: a PROFILE says this by itself; change it with --set, "
-            "such as --set machine=johnsville or --set seat.yaw_deg=0."
+            f"{options}: a PROFILE says this by itself; change it with --set, "
+            "such as --set seat.yaw_deg=0."
         )

@@ -15,20 +15,24 @@ from des_cli.cli.stdout import write_data
     epilog="""\b
 Examples:
   des-coriolis machines
-  des-coriolis machines des > my-machine.yaml
+  des-coriolis machines des > my.yaml
+  des-coriolis reduce cobra --machine my.yaml
 """,
 )
 @click.argument("machine", metavar="[NAME|FILE]", required=False)
 @text_or_json_option("Text is a line a machine, or the YAML of one; json is an object a line.")
+@click.option("--full", is_flag=True, help="Print the Denavit-Hartenberg rows too.")
 @verbosity_options
-def machines(machine: str | None, form: str) -> None:
-    """List the built-in machines, or print one with its limits, lengths and source.
+def machines(machine: str | None, form: str, full: bool) -> None:
+    """List the built-in machines, or print one: what may be changed of it, as a file.
 
-    What is printed of a machine reads back, from a file of its own or below
-    "machine:" in a profile, to the same machine.
+    What is printed reads back, from a file of its own or below "machine:" in a profile,
+    to the same machine, and a number that is changed in it changes the machine. A
+    machine of rows of its own is printed with its rows.
     """
     from des_cli.model.machines import MACHINES
-    from des_cli.profiles_in.machine_file import load_machine, machine_summary, machine_text
+    from des_cli.profiles_in.machine_file import load_machine, machine_summary
+    from des_cli.profiles_in.machine_text import machine_text
     from des_cli.profiles_in.machine_yaml import machine_mapping
 
     if machine is not None:
@@ -36,7 +40,7 @@ def machines(machine: str | None, form: str) -> None:
         if form == "json":
             write_data(json.dumps(machine_mapping(shown), ensure_ascii=False) + "\n")
         else:
-            write_data(machine_text(shown))
+            write_data(machine_text(shown, full=full))
         return
     known = {name: machine_summary(each) for name, each in MACHINES.items()}
     if form == "json":

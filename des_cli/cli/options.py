@@ -5,6 +5,7 @@ A shared option is a decorator; a command picks those that it understands.
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -13,6 +14,7 @@ from typing import Any, TypeVar
 
 import click
 
+from des_cli.cli.conditioning_options import conditioning_options
 from des_cli.cli.console import Console
 from des_cli.errors import FileAccessError, Problem
 
@@ -65,7 +67,7 @@ def profile_argument(command: F) -> F:
 
 
 def setting_options(command: F) -> F:
-    """Add ``--set`` and ``--column``, which change how a profile is read."""
+    """Add ``--set``, ``--column`` and what conditions a record: how a profile is read."""
     settings = click.option(
         "--set",
         "settings",
@@ -82,7 +84,26 @@ def setting_options(command: F) -> F:
         callback=_read_columns,
         help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
     )
-    return settings(columns(command))
+    return settings(columns(conditioning_options(command)))
+
+
+def machine_option(command: F) -> F:
+    """Add ``--machine``, which names another machine than the profile's."""
+    return click.option(
+        "--machine",
+        metavar="NAME|FILE",
+        callback=_require_name,
+        help="A built-in machine or a YAML file, instead of the profile's.  [default: des]",
+    )(command)
+
+
+def machine_settings(machine: str | None) -> tuple[str, ...]:
+    """Turn ``--machine`` into a setting, which stands before those that change the machine.
+
+    >>> machine_settings("my machine.yaml")
+    ('machine="my machine.yaml"',)
+    """
+    return () if machine is None else (f"machine={json.dumps(machine, ensure_ascii=False)}",)
 
 
 def text_or_json_option(text: str) -> Callable[[F], F]:
@@ -153,6 +174,12 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
     ),
     ("lead_in", "SECONDS", "Ramp from rest to the start in this time."),
     ("lead_out", "SECONDS", "Ramp from the end to rest in this time."),
+    (
+        "allow_change",
+        "SHARE",
+        "Let conditioning and limits change so much of the record's seat rate or G first; the "
+        "budgets are then what the reduction may add.",
+    ),
     ("tolerance", "RAD_S2", "Largest Coriolis component that --method zero leaves."),
     ("iterations", click.IntRange(min=1), "Backward-forward sweeps of report-sweep."),
 )
@@ -297,6 +324,14 @@ def _bracketed(value: Any) -> str:
     """Write ``1,2,3`` as a list; anything else as it is."""
     text = str(value).strip()
     return f"[{text}]" if "," in text and not text.startswith("[") else text
+
+
+def _require_name(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> str | None:
+    if value is not None and not value.strip():
+        raise click.BadParameter("is empty: name a machine or a file.")
+    return value
 
 
 def _require_assignments(

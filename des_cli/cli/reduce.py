@@ -12,6 +12,8 @@ from des_cli.cli.options import (
     DEFAULT_RUNS,
     TABLE_FORMATS,
     existing_folder,
+    machine_option,
+    machine_settings,
     profile_argument,
     read_stdin,
     reduction_options,
@@ -36,6 +38,7 @@ Examples:
 """,
 )
 @profile_argument
+@machine_option
 @setting_options
 @reduction_options
 @click.option(
@@ -69,6 +72,7 @@ Examples:
 def reduce(
     console: Console,
     profiles: tuple[str, ...],
+    machine: str | None,
     settings: tuple[str, ...],
     columns: dict[str, str],
     out: str | None,
@@ -97,7 +101,7 @@ def reduce(
     batch = [
         Job(
             source=source,
-            settings=(*settings, *reduction_settings(reduction)),
+            settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
             columns=columns,
             stdin=stdin if source == STANDARD_STREAM else None,
             out=DEFAULT_RUNS if out is None else out,
@@ -119,12 +123,21 @@ def _run(console: Console, batch: list[Job], workers: int, keep_going: bool) -> 
 
     alone = len(batch) == 1
     results = []
-    with local_executor(1 if alone else workers) as executor:
+    with (
+        local_executor(1 if alone else workers) as executor,
+        console.working(len(batch)) as line,
+    ):
         if not alone:
             require_distinct_names(batch)
         live = executor is None and console.verbosity >= VERBOSE
-        on_iteration = console.iteration if live else None
-        for result in run_jobs(batch, executor, keep_going=keep_going, on_iteration=on_iteration):
+        for result in run_jobs(
+            batch,
+            executor,
+            keep_going=keep_going,
+            on_iteration=console.follow(line, log=live),
+            on_stage=line.stage,
+            on_finished=line.advance,
+        ):
             if console.verbosity >= VERBOSE and not live:
                 for iteration in result.log:
                     console.iteration(iteration)
@@ -132,7 +145,8 @@ def _run(console: Console, batch: list[Job], workers: int, keep_going: bool) -> 
             results.append(result)
             print_result(console, result, alone=alone)
             if result.table is not None:
-                write_data(result.table)
+                with console.aside():
+                    write_data(result.table)
     if not alone:
         print_closing(console, results, len(batch))
     return exit_code_of(results, len(batch))

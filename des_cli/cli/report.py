@@ -44,14 +44,17 @@ def report(console: Console, runs: tuple[str, ...], out: str) -> None:
 
     stored: list[StoredRun] = []
     problems: list[Problem] = []
-    for folder in _run_folders(runs or (DEFAULT_RUNS,)):
-        try:
-            stored.append(read_run(folder))
-        except DesError as error:
-            problems += error.problems
-    if problems:
-        raise FileAccessError(problems)
-    page = render_report(stored)
+    with console.working() as line:
+        line.stage("reading runs")
+        for folder in _run_folders(runs or (DEFAULT_RUNS,)):
+            try:
+                stored.append(read_run(folder))
+            except DesError as error:
+                problems += error.problems
+        if problems:
+            raise FileAccessError(problems)
+        line.stage("page")
+        page = render_report(stored)
     if out == STANDARD_STREAM:
         write_data(page)
         return

@@ -17,6 +17,13 @@ from des_cli.results.reading import section
 _G_AXES = ("gx", "gy", "gz")
 _KINDS = ("peak", "limit")
 
+CHANGES = {
+    "damping": "changes.damping",
+    "smoothing": "changes.smoothing",
+    "limits": "executable",
+}
+"""Steps from the record to the motion that is reduced, and where the metrics have them."""
+
 _TOTAL = "felt.seat_angular_acceleration.magnitude"
 
 
@@ -25,6 +32,7 @@ def summary_rows(result: JobResult) -> list[tuple[str, str]]:
     assert result.metrics is not None
     metrics = result.metrics
     rows = [
+        ("changed first", changed_words(metrics)),
         ("cross-coupling", changes(metrics, objective_keys(result), rms=True)),
         ("", changes(metrics, ("seat_x", "seat_y", "seat_z"))),
         ("turning", _turning(metrics)),
@@ -35,6 +43,27 @@ def summary_rows(result: JobResult) -> list[tuple[str, str]]:
         ("study", "; ".join(_study(metrics))),
     ]
     return [(label, text) for label, text in rows if text]
+
+
+def changed_words(metrics: Mapping[str, Any]) -> str:
+    """Say what each step before the reduction changed of the record."""
+    steps = {name: _change_numbers(section(metrics, path)) for name, path in CHANGES.items()}
+    return "; ".join(f"{name} {', '.join(numbers)}" for name, numbers in steps.items() if numbers)
+
+
+def _change_numbers(step: Mapping[str, Any]) -> list[str]:
+    """Return the numbers of a step that are worth telling."""
+    rate, force = (
+        read(step, key) or 0.0 for key in ("seat_rate_deviation_relative", "seat_g_rms_error_g")
+    )
+    attitude = read(step, "attitude_error_max_deg") or 0.0
+    if rate < 0.0005 and force < 0.0005 and attitude < 0.05:
+        return []
+    return [
+        f"seat rate {percent(rate)}",
+        f"G {number(force)} g rms",
+        f"angle {number(attitude)} deg",
+    ]
 
 
 def _constants(metrics: Mapping[str, Any]) -> str:

@@ -12,6 +12,8 @@ import click
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     TABLE_FORMATS,
+    machine_option,
+    machine_settings,
     read_budgets,
     read_stdin,
     reduction_options_without,
@@ -71,6 +73,7 @@ Examples:
     callback=read_controls,
     help="A curve for each: free joints, one factor for all, or one each.",
 )
+@machine_option
 @setting_options
 @reduction_options_without("method", "algorithm", "control", "tolerance", "iterations")
 @click.option(
@@ -103,6 +106,7 @@ def sweep(
     budgets: Budgets | None,
     r2s: tuple[float, ...] | None,
     controls: tuple[str, ...],
+    machine: str | None,
     settings: tuple[str, ...],
     columns: dict[str, str],
     out: str | None,
@@ -129,7 +133,7 @@ def sweep(
     _refuse_existing(out, plot, overwrite)
     source = Job(
         profile,
-        settings=settings,
+        settings=(*machine_settings(machine), *settings),
         columns=columns,
         stdin=read_stdin((profile,)) if profile == STANDARD_STREAM else None,
     )
@@ -184,11 +188,17 @@ def _run(
     from des_cli.sweep import check_points, exit_code_of, run_points
 
     results = []
-    with local_executor(min(workers, len(jobs)) if workers else workers) as executor:
+    with (
+        local_executor(min(workers, len(jobs)) if workers else workers) as executor,
+        console.working(len(jobs), "points") as line,
+    ):
+        line.stage("reading")
         profile = check_points(jobs)
         live = executor is None and console.verbosity >= VERBOSE
-        for result in run_points(jobs, executor, console.iteration if live else None):
+        on_iteration = console.follow(line, log=live)
+        for result in run_points(jobs, executor, on_iteration, line.stage):
             results.append(result)
+            line.advance()
             _tell(console, result, live)
     points = [point for result in results for point in result.points]
     from des_cli.tradeoff import doubts

@@ -10,6 +10,8 @@ import click
 
 from des_cli.cli.console import Console
 from des_cli.cli.options import (
+    machine_option,
+    machine_settings,
     profile_argument,
     read_stdin,
     reduction_options,
@@ -40,6 +42,7 @@ Examples:
 """,
 )
 @profile_argument
+@machine_option
 @setting_options
 @reduction_options
 @text_or_json_option("json prints one object a line.")
@@ -48,6 +51,7 @@ Examples:
 def validate(
     console: Console,
     profiles: tuple[str, ...],
+    machine: str | None,
     settings: tuple[str, ...],
     columns: dict[str, str],
     form: str,
@@ -64,27 +68,35 @@ def validate(
 
     stdin = read_stdin(profiles)
     codes = set()
-    for source in profiles:
-        job = Job(
-            source,
-            settings=(*settings, *reduction_settings(reduction)),
-            columns=columns,
-            stdin=stdin if source == STANDARD_STREAM else None,
-        )
-        try:
-            profile = load_job(job)
-            require_consistent(profile.reduction, profile.name)
-        except (DesError, OSError) as error:
-            failure = Failure.of(error)
-            codes.add(failure.exit_code)
-            console.failure(failure)
-            if form == "json":
-                write_data(json.dumps(_rejected(source, failure)) + "\n")
-            continue
-        facts = understood(source, profile)
-        write_data((json.dumps(facts) if form == "json" else _line(facts)) + "\n")
+    with console.working(len(profiles)) as line:
+        for source in profiles:
+            job = Job(
+                source,
+                settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
+                columns=columns,
+                stdin=stdin if source == STANDARD_STREAM else None,
+            )
+            line.stage(f"reading {source}")
+            try:
+                profile = load_job(job)
+                require_consistent(profile.reduction, profile.name)
+            except (DesError, OSError) as error:
+                failure = Failure.of(error)
+                codes.add(failure.exit_code)
+                console.failure(failure)
+                if form == "json":
+                    _write(console, json.dumps(_rejected(source, failure)))
+            else:
+                facts = understood(source, profile)
+                _write(console, json.dumps(facts) if form == "json" else _line(facts))
+            line.advance()
     # Several kinds of failure have no code in common but that of a batch.
     return codes.pop() if len(codes) == 1 else ExitCode.FILE if codes else ExitCode.DONE
+
+
+def _write(console: Console, line: str) -> None:
+    with console.aside():
+        write_data(line + "\n")
 
 
 def understood(source: str, profile: Profile) -> dict[str, Any]:

@@ -58,6 +58,14 @@ def rotation_of_quaternion(quaternion: Floats) -> Floats:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
+def quaternion_product(one: Floats, other: Floats) -> Floats:
+    """Return the quaternions (w, x, y, z) of turns by ``other``, then by ``one``, (..., 4)."""
+    w, v = one[..., :1], one[..., 1:]
+    u, z = other[..., :1], other[..., 1:]
+    scalar = w * u - np.sum(v * z, axis=-1, keepdims=True)
+    return np.concatenate([scalar, w * z + u * v + np.cross(v, z)], axis=-1)
+
+
 def geodesic_angle(one: Floats, other: Floats) -> Floats:
     """Return the angle of the rotation between attitudes (..., 3, 3), (...) [rad].
 
@@ -66,3 +74,35 @@ def geodesic_angle(one: Floats, other: Floats) -> Floats:
     """
     chord = np.linalg.norm(one - other, axis=(-2, -1)) / (2.0 * np.sqrt(2.0))
     return np.asarray(2.0 * np.arcsin(np.minimum(chord, 1.0)))
+
+
+def rotation_vector(one: Floats, other: Floats) -> Floats:
+    """Return the rotation from one attitude to another, in the axes of the first.
+
+    ``one @ rotation(vector)`` is the other. The unit quaternion is the eigenvector of the
+    largest eigenvalue of Bar-Itzhack's matrix (2000), which is regular at every angle, a
+    half turn included.
+
+    Parameters
+    ----------
+    one, other : (..., 3, 3) array
+
+    Returns
+    -------
+    (..., 3) array
+        [rad], no longer than pi.
+    """
+    turn = np.swapaxes(one, -1, -2) @ other
+    matrix = np.zeros((*turn.shape[:-2], 4, 4))
+    trace = np.trace(turn, axis1=-2, axis2=-1)
+    matrix[..., 0, 0] = trace
+    for x, (y, z) in enumerate(((1, 2), (2, 0), (0, 1))):
+        axial = turn[..., z, y] - turn[..., y, z]
+        matrix[..., 0, 1 + x] = matrix[..., 1 + x, 0] = axial
+    matrix[..., 1:, 1:] = turn + np.swapaxes(turn, -1, -2) - trace[..., None, None] * np.eye(3)
+    quaternion = np.linalg.eigh(matrix)[1][..., -1]
+    quaternion = np.where(quaternion[..., :1] < 0.0, -quaternion, quaternion)
+    axis = quaternion[..., 1:]
+    sine = np.linalg.norm(axis, axis=-1)
+    angle = 2.0 * np.arctan2(sine, quaternion[..., 0])
+    return np.asarray(2.0 * axis / np.sinc(0.5 * angle / np.pi)[..., None])

@@ -15,8 +15,10 @@ from des_cli.kinematics.attitude import (
     geodesic_angle,
     integrate_attitude,
     rotation_of_quaternion,
+    rotation_vector,
 )
-from des_cli.kinematics.chain import Chain, chain_of, seat_rotation
+from des_cli.kinematics.chain import Chain, chain_of, joint_axes, seat_rotation
+from des_cli.kinematics.coriolis import angular_acceleration_split
 from des_cli.kinematics.orientation import (
     SINGULAR_VALUE_THRESHOLD,
     body_jacobian,
@@ -25,7 +27,7 @@ from des_cli.kinematics.orientation import (
 )
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.machine import Machine
-from des_cli.model.motion import DesiredMotion, Motion, mean_of_sides
+from des_cli.model.motion import DesiredMotion, Motion, Shortfall, mean_of_sides
 from des_cli.model.profile import BodyRates, JointCommands, Profile
 
 LONGEST_TURN = 0.1
@@ -100,13 +102,37 @@ def _from_body_rates(chain: Chain, profile: Profile, command: BodyRates) -> Desi
     rate, held, residual = field.rates(body_jacobian(chain, sides), wanted)
     flown = seat_rotation(chain, angle)
     wished = flown[0] @ integrate_attitude(step, command)
+    motion = Motion(profile.t, angle, rate[:, 0], rate[:, 1])
     return DesiredMotion(
-        motion=Motion(profile.t, angle, rate[:, 0], rate[:, 1]),
+        motion=motion,
         singular_value=smallest_singular_value(body_jacobian(chain, angle)),
         damped=_at_samples(held),
         residual=mean_of_sides(residual),
         attitude_error=float(np.max(geodesic_angle(flown, wished))),
         recorded_attitude_error=_against_record(command, wished),
+        shortfall=_shortfall(chain, motion, command, held, (flown, wished)),
+    )
+
+
+def _shortfall(
+    chain: Chain, motion: Motion, command: BodyRates, held: Flags, attitudes: tuple[Floats, Floats]
+) -> Shortfall | None:
+    """Return what of the rates the joints do not make; None where nothing was held or damped."""
+    if not np.any(held):
+        return None
+    sides = motion.rate_sides
+    accelerations = np.broadcast_to(motion.acceleration[:, None, :], sides.shape)
+    made = (sides[..., None, :] @ joint_axes(chain, motion.angle_sides, "seat"))[..., 0, :]
+    euler, cross = angular_acceleration_split(
+        chain, motion.angle_sides, sides, accelerations, "seat"
+    )
+    short = np.any(held, axis=1)[:, None, None]
+    slope = ((command.end - command.start) / motion.step[:, None])[:, None, :]
+    return Shortfall(
+        seat_rate=np.where(short, np.stack([command.start, command.end], axis=1) - made, 0.0),
+        seat_angular_acceleration=np.where(short, slope - (euler + cross), 0.0),
+        seat_g=np.zeros_like(made),
+        attitude=rotation_vector(*attitudes),
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from des_cli.kinematics.chain import Chain, chain_of, joint_axes
@@ -13,7 +15,7 @@ from des_cli.kinematics.seat import (
     specific_force,
 )
 from des_cli.model.machine import Machine, Seat
-from des_cli.model.motion import Motion
+from des_cli.model.motion import DesiredMotion, Motion, Shortfall
 from des_cli.model.response import Response
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
@@ -54,4 +56,34 @@ def respond_on(chain: Chain, gravity: float, motion: Motion) -> Response:
         seat_angular_acceleration=noncoriolis + cross,
         seat_parts=in_seat_axes(chain, angles, parts) / STANDARD_GRAVITY_M_S2,
         seat_g=pilot_g(force),
+    )
+
+
+def respond_as_asked(machine: Machine, seat: Seat, asked: DesiredMotion) -> Response:
+    """Evaluate what a profile asks of the seat, beyond what its joint motion makes.
+
+    Parameters
+    ----------
+    machine, seat, asked
+
+    Returns
+    -------
+    Response
+        Rate, angular acceleration and G as the record has them; the cross-coupling and
+        the parts of the linear acceleration are those of the joint motion, which alone
+        makes any.
+    """
+    return with_shortfall(respond(machine, seat, asked.motion), asked.shortfall)
+
+
+def with_shortfall(response: Response, shortfall: Shortfall | None) -> Response:
+    """Return a response of a joint motion with what was asked for and not made."""
+    if shortfall is None:
+        return response
+    return replace(
+        response,
+        seat_rate=response.seat_rate + shortfall.seat_rate,
+        seat_angular_acceleration=response.seat_angular_acceleration
+        + shortfall.seat_angular_acceleration,
+        seat_g=response.seat_g + shortfall.seat_g,
     )

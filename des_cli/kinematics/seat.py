@@ -145,6 +145,10 @@ def specific_force(
     return force / STANDARD_GRAVITY_M_S2
 
 
+PILOT_SIGNS = np.array([1.0, 1.0, -1.0])
+"""From the specific force along x, y, z of the seat to Gx, Gy, Gz."""
+
+
 def pilot_g(force: Floats) -> Floats:
     """Return the G-vector (Gx, Gy, Gz) of a specific force in seat axes.
 
@@ -166,5 +170,5 @@ def pilot_g(force: Floats) -> Floats:
     >>> pilot_g(np.array([0.0, 0.0, -1.0]))
     array([0., 0., 1.])
     """
-    named: Floats = np.asarray(force) * np.array([1.0, 1.0, -1.0])
+    named: Floats = np.asarray(force) * PILOT_SIGNS
     return named + 0.0  # no negative zero

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from des_cli.model.machine import ASSUMED_JERK_PER_ACCELERATION, DHRow, JointLimits, Machine
 from des_cli.units import FOOT_M, STANDARD_GRAVITY_M_S2
 
 _QUARTER = math.pi / 2
 
+ForkAxis: TypeAlias = Literal["radial", "tangential"]
+FORK_AXES: tuple[ForkAxis, ForkAxis] = ("radial", "tangential")
+
+CHAIN_LENGTHS = ("L2", "Lx", "Ly", "Lz", "Lt")
+"""The lengths that Table 2 of the study is made of."""
+
 
 def gimballed_centrifuge_rows(
-    lengths: Mapping[str, float], *, fork_axis: Literal["radial", "tangential"] = "radial"
+    lengths: Mapping[str, float], *, fork_axis: ForkAxis = "radial"
 ) -> tuple[DHRow, ...]:
     """Return the rows of Table 2 for a centrifuge with own lengths.
 
@@ -55,6 +61,36 @@ def gimballed_centrifuge_rows(
         DHRow(alpha=_QUARTER),
         DHRow(d=-lengths["Lt"]),
     )
+
+
+def read_chain(rows: Sequence[DHRow]) -> tuple[dict[str, float], ForkAxis] | None:
+    """Tell the lengths and the fork's axis that rows were made of.
+
+    Parameters
+    ----------
+    rows : sequence of DHRow
+
+    Returns
+    -------
+    lengths : dict of str to float
+        Each of ``CHAIN_LENGTHS`` [m].
+    fork_axis : {"radial", "tangential"}
+        None for both where `gimballed_centrifuge_rows` does not make these rows.
+    """
+    # a chain whose lengths are 1, 2, ... tells by its rows which one stands where
+    marks = {float(mark): name for mark, name in enumerate(CHAIN_LENGTHS, start=1)}
+    for axis in FORK_AXES:
+        marked = gimballed_centrifuge_rows({v: k for k, v in marks.items()}, fork_axis=axis)
+        lengths = {
+            marks[abs(mark)]: math.copysign(1.0, mark) * length + 0.0
+            for there, row in zip(marked, rows, strict=False)
+            for mark, length in ((there.a, row.a), (there.d, row.d))
+            if mark
+        }
+        complete = len(lengths) == len(marks)
+        if complete and tuple(rows) == gimballed_centrifuge_rows(lengths, fork_axis=axis):
+            return lengths, axis
+    return None
 
 
 def limits_with_assumed_jerk(angle: float, rate: float, acceleration: float) -> JointLimits:

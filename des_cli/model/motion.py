@@ -108,6 +108,35 @@ class GOffset:
 
 
 @dataclass(frozen=True)
+class Shortfall:
+    """What a profile asks of the seat beyond what its joint motion makes: asked less made.
+
+    Parameters
+    ----------
+    seat_rate : (n - 1, 2, 3) array
+        At both ends of every interval, along x, y, z of the seat [rad/s].
+    seat_angular_acceleration : (n - 1, 2, 3) array
+        Likewise [rad/s^2].
+    seat_g : (n - 1, 2, 3) array
+        Likewise, in the pilot's signs [g].
+    attitude : (n, 3) array
+        At samples, the rotation vector along x, y, z of the seat that turns the
+        attitude that is made into the one that is asked for [rad].
+    """
+
+    seat_rate: Floats
+    seat_angular_acceleration: Floats
+    seat_g: Floats
+    attitude: Floats
+
+    def __post_init__(self) -> None:
+        n = len(self.attitude)
+        freeze(self, "attitude", (n, 3))
+        for name in ("seat_rate", "seat_angular_acceleration", "seat_g"):
+            freeze(self, name, (n - 1, 2, 3))
+
+
+@dataclass(frozen=True)
 class DesiredMotion:
     """The motion that a profile asks for, and how well the joints can make it.
 
@@ -131,6 +160,8 @@ class DesiredMotion:
         the pilot's signs [g]. The motion is the machine's nearest to it.
     g_offset : GOffset, optional
         How near that is.
+    shortfall : Shortfall, optional
+        What is asked for and not made; None where the joints make all of it.
     """
 
     motion: Motion
@@ -141,6 +172,7 @@ class DesiredMotion:
     recorded_attitude_error: float | None = None
     seat_g: Floats | None = None
     g_offset: GOffset | None = None
+    shortfall: Shortfall | None = None
 
 
 def mean_of_sides(sides: Floats) -> Floats:

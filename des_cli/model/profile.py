@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
@@ -164,6 +165,10 @@ class Reduction:
     lead_in, lead_out : float
         Time [s] in which the command table ramps from rest to the maneuver's
         start, and from its end to rest; 0 for none.
+    allow_change : float, optional
+        Share of the record's seat rate, or of its G, that conditioning, damping and the
+        limits may change before the reduction; the budgets are then what it may add. None
+        for the little that needs no allowance, within the budgets.
     tolerance : float
         Largest Coriolis component that ``method: zero`` leaves [rad/s^2].
     """
@@ -186,6 +191,7 @@ class Reduction:
     optimise: tuple[FreeParameter, ...] = ()
     lead_in: float = 0.0
     lead_out: float = 0.0
+    allow_change: float | None = None
     tolerance: float = 1e-4
 
     def __post_init__(self) -> None:
@@ -211,6 +217,11 @@ class Profile:
     reduction : Reduction
     sha256 : str
         Digest of the bytes that the profile was read from, with its overrides.
+    smooth_cutoff_hz : float
+        What the record is smoothed with before it is reduced; the record stays
+        the reference [Hz]. Infinite where it is not smoothed.
+    remarks : tuple of str
+        What reading changed of the file, a sentence each.
     """
 
     name: str
@@ -221,6 +232,8 @@ class Profile:
     initial_angle: Floats = field(default_factory=lambda: np.zeros(3))
     reduction: Reduction = field(default_factory=Reduction)
     sha256: str = ""
+    smooth_cutoff_hz: float = math.inf
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         freeze(self, "t", (None,))

@@ -161,10 +161,13 @@ class Run:
         NoSolutionError
             If the solver did not converge.
         NotReleasedError
-            If a verification check failed, or a limit or a bound for the occupant
+            If the record was changed by more than is allowed, a verification check
+            failed, or a limit or a bound for the occupant
             under ``check`` or ``enforce``.
         """
         name = self.profile.name
+        if self.solution.status == "changed":
+            raise NotReleasedError([Problem(name, self.solution.message)])
         if not self.solution.usable:
             raise NoSolutionError(
                 [Problem(name, f"{self.solution.status}: {self.solution.message}")]

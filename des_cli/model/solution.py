@@ -9,8 +9,16 @@ from des_cli.model.arrays import Floats, freeze
 from des_cli.model.motion import Motion
 
 Status: TypeAlias = Literal[
-    "converged", "acceptable", "iteration-limit", "diverged", "infeasible", "invalid-input"
+    "converged",
+    "acceptable",
+    "iteration-limit",
+    "diverged",
+    "infeasible",
+    "changed",
+    "invalid-input",
 ]
+"""How a solution ended; ``changed`` is one that was not looked for, because the record had
+been changed by more than is allowed."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,10 +8,10 @@ import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from des_cli.errors import DesError, FileAccessError, Problem, ProfileError, UsageError
+from des_cli.errors import FileAccessError, Problem, ProfileError, UsageError
 from des_cli.model.profile import Profile
 from des_cli.profiles_in.builtin import builtin_profile, builtin_profiles
-from des_cli.profiles_in.findings import bounded
+from des_cli.profiles_in.findings import Findings, bounded
 from des_cli.profiles_in.profile_csv import parse_samples
 from des_cli.profiles_in.profile_yaml import (
     Commands,
@@ -20,6 +20,7 @@ from des_cli.profiles_in.profile_yaml import (
     parse_profile,
     parse_settings,
 )
+from des_cli.profiles_in.schema import ProfileSettings
 from des_cli.profiles_in.source import decode, label_of, read_source
 from des_cli.profiles_in.wording import did_you_mean
 
@@ -128,21 +129,8 @@ def _load_csv(
     settings: Sequence[str],
     columns: Mapping[str, str],
 ) -> Profile:
-    problems: list[Problem] = []
-    commands: Commands | None = None
-    try:
-        commands = parse_samples(text, reading.label, columns)
-    except ProfileError as error:
-        problems += error.problems
-    try:
-        document, findings = parse_settings(settings, reading.label)
-        findings.problems += problems
-        return finish(document, lambda *_: commands, reading, name, findings)
-    except ProfileError as error:
-        if problems and not set(problems) <= set(error.problems):
-            raise ProfileError([*problems, *error.problems]) from None
-        raise
-    except DesError:
-        if problems:
-            raise ProfileError(problems) from None
-        raise
+    def commands(document: ProfileSettings, reading: Reading, findings: Findings) -> Commands:
+        return parse_samples(text, reading.label, columns, reading.conditioning, reading.remarks)
+
+    document, findings = parse_settings(settings, reading.label)
+    return finish(document, commands, reading, name, findings)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -18,19 +18,14 @@ from des_cli.model.machine import (
     Machine,
     OccupantBounds,
 )
-from des_cli.model.machines import MACHINES, gimballed_centrifuge_rows
+from des_cli.model.machines import MACHINES
 from des_cli.profiles_in.findings import Findings
-from des_cli.profiles_in.machine_schema import (
-    JointLimitsSection,
-    MachineSection,
-    split_angle,
-    split_signed_length,
-)
+from des_cli.profiles_in.machine_rows import read_chain_of_section
+from des_cli.profiles_in.machine_schema import JointLimitsSection, MachineSection
 from des_cli.profiles_in.wording import did_you_mean, one_of, plain
 from des_cli.profiles_in.yaml_nodes import Step, parse_yaml
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
-_CHAIN_LENGTHS = ("L2", "Lx", "Ly", "Lz", "Lt")
 _G_COMPONENTS = ("gx", "gy", "gz")
 
 
@@ -97,25 +92,23 @@ def build_machine(section: Any, path: Sequence[Step], findings: Findings) -> Mac
     if section.base is not None:
         base = named_machine(section.base, [*path, "base"], findings)
     has_base = section.base is not None
-    lengths = dict(base.lengths) if base else {}
-    given = section.given("lengths")
-    if given:
-        lengths |= {name: value * given[1].to_si for name, value in given[0].items()}
     limits = _limits(section, base, has_base, path, findings)
-    rows = _rows(section, base, has_base, lengths, path, findings)
+    chain = read_chain_of_section(section, base, path, findings)
     gravity = section.si("gravity", base.gravity if base else STANDARD_GRAVITY_M_S2)
-    if len(findings.problems) > known or rows is None:
+    if len(findings.problems) > known or chain is None:
         return None
-    default_name = f"{base.name} (changed)" if base else "own machine"
-    return Machine(
-        name=section.name or default_name,
-        rows=rows,
+    machine = Machine(
+        name=section.name or (base.name if base else "own machine"),
+        rows=chain.rows,
         limits=(limits[0], limits[1], limits[2]),
         gravity=gravity,
-        lengths=lengths,
+        lengths=chain.lengths,
         source=section.source or (base.source if base else ""),
         occupant=_occupant(section.occupant, base.occupant if base else OccupantBounds()),
     )
+    if base and machine != base and not section.name:
+        return replace(machine, name=f"{base.name} (changed)")
+    return machine
 
 
 def _limits(
@@ -166,111 +159,6 @@ def _occupant(section: Any, base: OccupantBounds) -> OccupantBounds:
     if section.given("seat_angular_acceleration"):
         changes["angular_acceleration"] = section.si("seat_angular_acceleration")
     return replace(base, **changes)
-
-
-def _rows(
-    section: Any,
-    base: Machine | None,
-    has_base: bool,
-    lengths: Mapping[str, float],
-    path: Sequence[Step],
-    findings: Findings,
-) -> tuple[DHRow, ...] | None:
-    if section.rows is not None:
-        if section.fork_axis is not None:
-            findings.add([*path, "fork_axis"], "says nothing beside rows: leave one of them out")
-        return _own_rows(section.rows, lengths, [*path, "rows"], findings)
-    if base and section.given("lengths") is None and section.fork_axis is None:
-        return base.rows
-    if has_base and base is None:
-        return None
-    given = section.given_key("lengths")
-    missing = [name for name in _CHAIN_LENGTHS if name not in lengths]
-    if missing:
-        findings.add(
-            [*path, given] if given else path,
-            f"the length{'s' * (len(missing) > 1)} {', '.join(missing)} must be given "
-            "(or rows, or base: des)",
-        )
-        return None
-    for name in section.given("lengths")[0] if given else ():
-        if name not in (*_CHAIN_LENGTHS, "L1"):
-            hint = did_you_mean(name, _CHAIN_LENGTHS) or f"; there are {', '.join(_CHAIN_LENGTHS)}"
-            findings.add([*path, str(given), name], f"is not a length of the chain{hint}")
-    axis: Any = section.fork_axis or (_fork_axis(base) if base else "radial")
-    if axis is None:
-        findings.add([*path, "base"], "its chain is not one of named lengths: give rows")
-        return None
-    return gimballed_centrifuge_rows(lengths, fork_axis=axis)
-
-
-def _fork_axis(base: Machine) -> Any:
-    """Tell which chain of named lengths a machine has, or None."""
-    if any(name not in base.lengths for name in _CHAIN_LENGTHS):
-        return None
-    for axis in ("radial", "tangential"):
-        if base.rows == gimballed_centrifuge_rows(base.lengths, fork_axis=axis):
-            return axis
-    return None
-
-
-def _own_rows(
-    rows: Sequence[Any], lengths: Mapping[str, float], path: Sequence[Step], findings: Findings
-) -> tuple[DHRow, ...]:
-    made = []
-    for index, row in enumerate(rows):
-        where = [*path, index]
-        variable, sign, offset = None, 1, row.si("theta")
-        if row.theta is not None:
-            variable, sign, offset = split_angle(row.theta)
-        made.append(
-            DHRow(
-                alpha=row.si("alpha"),
-                a=_length(row, "a", lengths, where, findings),
-                d=_length(row, "d", lengths, where, findings),
-                offset=offset,
-                variable=variable,
-                sign=sign,
-            )
-        )
-    _check_chain(made, path, findings)
-    return tuple(made)
-
-
-def _length(
-    row: Any, key: str, lengths: Mapping[str, float], path: Sequence[Step], findings: Findings
-) -> float:
-    named = getattr(row, key)
-    if named is None:
-        return float(row.si(key))
-    sign, name = split_signed_length(named)
-    if name not in lengths:
-        hint = did_you_mean(name, lengths)
-        findings.add([*path, key], f"the length {name} is not among the lengths given{hint}")
-        return 0.0
-    return sign * lengths[name]
-
-
-def _check_chain(rows: Sequence[DHRow], path: Sequence[Step], findings: Findings) -> None:
-    """Say where the joints are not arm, fork and cab, once each and in this order."""
-    joints = [row.variable for row in rows if row.variable in JOINTS]
-    for joint in JOINTS:
-        count = joints.count(joint)
-        if count != 1:
-            times = "in no row" if count == 0 else f"in {count} rows"
-            findings.add(path, f"the {joint} turns {times}; it must turn exactly one")
-    if sorted(map(str, joints)) == sorted(JOINTS) and tuple(joints) != JOINTS:
-        findings.add(
-            path,
-            f"the joints stand in the order {', '.join(map(str, joints))}; "
-            "from the ground outward they are arm, fork, cab",
-        )
-    last_joint = max((i for i, row in enumerate(rows) if row.variable in JOINTS), default=-1)
-    for index, row in enumerate(rows):
-        if row.variable and row.variable not in JOINTS and index < last_joint:
-            findings.add(
-                [*path, index], f"{row.variable} turns before the cab; the seat sits in the cab"
-            )
 
 
 def machine_mapping(machine: Machine) -> dict[str, Any]:

@@ -133,8 +133,11 @@ def _make_budgets_a_mapping(reduction: dict[str, Node]) -> None:
 def _make_machine_a_mapping(document: dict[str, Node], label: str) -> None:
     """Make a built-in machine, or the default one, the base of what is changed in it."""
     named = document.get("machine", Node(label, DEFAULT_MACHINE))
-    if isinstance(named.value, str) and not is_machine_file(named.value):
-        document["machine"] = Node(named.place, {"base": named}, {"base": named.place})
+    if not isinstance(named.value, str):
+        return
+    if is_machine_file(named.value):
+        raise _rejected(label, f"the machine is a file: change it in {plain(named.value)}")
+    document["machine"] = Node(named.place, {"base": named}, {"base": named.place})
 
 
 def _put(node: Node, path: Sequence[Step], value: Node, label: str) -> None:

@@ -10,6 +10,15 @@ import numpy as np
 from des_cli.errors import Problem, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, GCommand, JointCommands
+from des_cli.profiles_in.attitude import (
+    ALIASES,
+    EULER,
+    QUATERNION,
+    flown_attitude,
+    rows_with_attitude,
+    with_quaternions,
+)
+from des_cli.profiles_in.conditioning import Conditioning, in_seat_axes, resampled, rows_inside
 from des_cli.profiles_in.csv_table import Header, read_columns, split_header
 from des_cli.profiles_in.g_commands import sampled_g
 from des_cli.profiles_in.g_schema import G_STEMS, RATE_STEMS
@@ -29,20 +38,17 @@ QUANTITIES: Mapping[str, str] = {
     "gx": "specific_force",
     "gy": "specific_force",
     "gz": "specific_force",
+    "roll": "angle",
+    "pitch": "angle",
+    "yaw": "angle",
 }
 """What each column measures."""
 
 _KINDS = {"rate": "a rate", "angle": "an angle", "time": "a time", "specific_force": "a G"}
 _JOINTS = ("arm", "fork", "cab")
 _RATES = ("p", "q", "r")
-QUATERNION = ("q0", "q1", "q2", "q3")
-"""Recorded attitude (w, x, y, z), without a unit."""
-
 IGNORED = ("quality",)
 """Columns that recorders add and that say nothing about the motion."""
-
-_UNIT_NORM = 0.01
-"""How far a recorded attitude's norm may be from 1, as printing rounds it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +73,13 @@ class _Column:
 
 
 def parse_samples(
-    text: str, label: str, columns: Mapping[str, str]
+    text: str,
+    label: str,
+    columns: Mapping[str, str],
+    conditioning: Conditioning | None = None,
+    remarks: list[str] | None = None,
 ) -> tuple[Floats, JointCommands | BodyRates | GCommand]:
-    """Read joint commands, body rates or an asked G from the text of a CSV file.
+    """Read joint commands, body rates, an attitude or an asked G from the text of a CSV file.
 
     Parameters
     ----------
@@ -80,25 +90,32 @@ def parse_samples(
         Name with its unit to the name in the file, for columns that the file
         names otherwise; with any of these, columns that mean nothing to the
         tool are ignored.
+    conditioning : Conditioning, optional
+        What is done to the rows.
+    remarks : list of str, optional
+        Takes what was changed of the file, a sentence each.
 
     Returns
     -------
     t : (n,) array
         [s]
     commands : JointCommands, BodyRates or GCommand
+        Of an attitude without rates: the body rates that fly it.
 
     Raises
     ------
     ProfileError
         With everything that is wrong.
     """
+    conditioning = conditioning or Conditioning()
+    remarks = [] if remarks is None else remarks
     header = split_header(text, label)
     problems: list[Problem] = []
-    chosen = _choose(header, columns, problems)
+    chosen = _choose(header, columns, problems, euler=conditioning.euler is not None)
     if problems:
         raise ProfileError(problems)
-    attitude = [column.in_file for column in chosen if column.stem in QUATERNION]
-    values = read_columns(header, [column.in_file for column in chosen], attitude)
+    may_lack = [column.in_file for column in chosen if column.stem in (*QUATERNION, *EULER)]
+    values = read_columns(header, [column.in_file for column in chosen], may_lack)
     by_stem = {
         column.stem: values[:, index] * (column.unit.to_si if column.unit else 1.0)
         for index, column in enumerate(chosen)
@@ -106,9 +123,21 @@ def parse_samples(
     time = next(column for column in chosen if column.stem == "t")
     _check_times(header, time, values[:, chosen.index(time)], problems)
     _check_magnitudes(header, chosen, by_stem, problems)
-    quaternions = _attitude(header, by_stem, problems) if attitude else None
     if problems:
         raise ProfileError(problems)
+    rows = rows_inside(by_stem["t"], conditioning, label, remarks)
+    by_stem = {stem: column[rows] for stem, column in by_stem.items()}
+    by_stem = with_quaternions(by_stem, conditioning.euler, header, rows, problems)
+    if problems:
+        raise ProfileError(problems)
+    by_stem = in_seat_axes(by_stem, conditioning, label)
+    flies_attitude = not {"arm", "p", *G_STEMS} & set(by_stem)
+    if flies_attitude:
+        kept = rows_with_attitude(by_stem, label, remarks)
+        by_stem = {stem: column[kept] for stem, column in by_stem.items()}
+    by_stem = resampled(by_stem, conditioning, label, remarks)
+    if flies_attitude:
+        return flown_attitude(by_stem, remarks)
     t = by_stem["t"]
     if any(stem in by_stem for stem in G_STEMS):
         return sampled_g(t, by_stem)
@@ -117,31 +146,47 @@ def parse_samples(
         rate = rates_of_positions(t, position)
         return t, JointCommands(by_stem["arm"], position, rate[:-1], rate[1:])
     rates = np.column_stack([by_stem[stem] for stem in _RATES])
-    return t, BodyRates(rates[:-1], middles_of_samples(t, rates), rates[1:], quaternions)
+    recorded = np.column_stack([by_stem[q] for q in QUATERNION]) if "q0" in by_stem else None
+    return t, BodyRates(rates[:-1], middles_of_samples(t, rates), rates[1:], recorded)
 
 
-def _choose(header: Header, columns: Mapping[str, str], problems: list[Problem]) -> list[_Column]:
+def _choose(
+    header: Header, columns: Mapping[str, str], problems: list[Problem], *, euler: bool
+) -> list[_Column]:
     """Match the columns of the file with what a profile needs."""
     where = f"{header.label}:1"
     names = _renamed(header, columns, problems)
     found: list[_Column] = []
     for in_file, name in names.items():
         stem, unit = split_unit(name)
-        if name in QUATERNION:
-            found.append(_Column(name, name, in_file))
+        if name in ALIASES:
+            found.append(_Column(ALIASES[name], name, in_file))
         elif unit is not None and QUANTITIES.get(stem) == unit.quantity:
             found.append(_Column(stem, name, in_file, unit))
         elif name not in IGNORED and (name in columns or not columns):
             problems.append(Problem(where, _unknown(name, stem)))
+    by_user = {column.stem for column in found if column.name in columns}
+    if by_user & {*QUATERNION, *EULER} and not by_user & set(_RATES):
+        # who names an attitude, and no rates, means the attitude
+        found = [column for column in found if column.stem not in _RATES]
     _check_complete(found, names.values(), where, problems)
-    stems = {column.stem for column in found}
-    if stems & set(G_STEMS):
-        return [column for column in found if column.stem in ("t", *G_STEMS, *RATE_STEMS)]
-    kept = {"t", *(_JOINTS if "arm" in stems else _RATES)}
-    attitude = {column.stem for column in found if column.stem in QUATERNION}
-    if "arm" not in kept and len(attitude) == len(QUATERNION):
-        kept |= attitude
+    kept = _kept({column.stem for column in found}, euler=euler)
     return [column for column in found if column.stem in kept]
+
+
+def _kept(stems: set[str], *, euler: bool) -> set[str]:
+    """Return which of the quantities that a file has are read."""
+    if "arm" in stems:
+        return {"t", *_JOINTS}
+    if stems & set(G_STEMS):
+        return {"t", *G_STEMS, *RATE_STEMS}
+    kept = {"t", *(stems & set(_RATES))}
+    if stems >= set(QUATERNION):
+        return kept | set(QUATERNION)
+    # Beside rates an attitude is only compared with: there, without an order, it is left out.
+    if stems >= set(EULER) and (euler or len(kept) == 1):
+        return kept | set(EULER)
+    return kept
 
 
 def _renamed(header: Header, columns: Mapping[str, str], problems: list[Problem]) -> dict[str, str]:
@@ -180,7 +225,7 @@ def _check_complete(
     found: list[_Column], names: object, where: str, problems: list[Problem]
 ) -> None:
     stems = [column.stem for column in found]
-    for stem in QUANTITIES:
+    for stem in (*QUANTITIES, *QUATERNION):
         if stems.count(stem) > 1:
             same = [column.name for column in found if column.stem == stem]
             problems.append(Problem(where, f"{stem} is given twice: {' and '.join(same)}"))
@@ -196,15 +241,18 @@ def _check_complete(
         return
     if problems:
         return  # a column that is not understood may be the one that seems to be missing
-    wanted = ("t", *(_RATES if rates else _JOINTS))
-    missing = [stem for stem in wanted if stem not in stems]
-    if not joints and not rates:
+    kinds = (_RATES if rates else (), _JOINTS if joints else (), QUATERNION, EULER)
+    kind = next((kind for kind in kinds if set(kind) & set(stems)), None)
+    if kind is None:
         what = "has neither joint commands (t_s,arm_rpm,fork_deg,cab_deg) nor body rates"
-        problems.append(Problem(where, f"{what} (t_s,p_rad_s,q_rad_s,r_rad_s) nor G (t_s,gz_g)"))
+        what += " (t_s,p_rad_s,q_rad_s,r_rad_s) nor an attitude (t_s,q0,q1,q2,q3)"
+        problems.append(Problem(where, f"{what} nor G (t_s,gz_g)"))
         return
-    for stem in missing:
-        units = one_of([f"{stem}_{suffix}" for suffix in suffixes(QUANTITIES[stem])])
-        problems.append(Problem(where, f"a column is missing: {units}"))
+    for stem in ("t", *kind):
+        if stem not in stems:
+            units = suffixes(QUANTITIES[stem]) if stem in QUANTITIES else ()
+            names = one_of([f"{stem}_{suffix}" for suffix in units]) or stem
+            problems.append(Problem(where, f"a column is missing: {names}"))
 
 
 def _check_beside_g(
@@ -262,28 +310,6 @@ def _check_magnitudes(
             place = f"{header.label}:{header.lines + int(wrong[0]) + 1}"
             what = f"is beyond {MAX_MAGNITUDE:g} rad or rad/s ({len(wrong)} such cells)"
             problems.append(Problem(place, f"{plain(column.in_file)}: {what}"))
-
-
-def _attitude(
-    header: Header, by_stem: Mapping[str, Floats], problems: list[Problem]
-) -> Floats | None:
-    """Return unit quaternions, (n, 4), NaN where none was recorded."""
-    recorded = np.column_stack([by_stem[name] for name in QUATERNION])
-    norm = np.sqrt(np.sum(recorded**2, axis=1))
-    wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_NORM)
-    if len(wrong):
-        first = int(wrong[0])
-        problems.append(
-            Problem(
-                f"{header.label}:{header.lines + first + 1}",
-                f"q0..q3: the attitude's norm is {norm[first]:.6g}, not 1 "
-                f"({len(wrong)} such row{'s' * (len(wrong) > 1)})",
-            )
-        )
-        return None
-    unit: Floats = recorded / norm[:, None]
-    unit[np.isnan(norm)] = np.nan
-    return unit
 
 
 def _some(names: list[str], most: int = 12) -> str:

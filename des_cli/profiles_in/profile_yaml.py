@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -16,6 +16,12 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Machine, Seat
 from des_cli.model.profile import BodyRates, GCommand, JointCommands, Profile
 from des_cli.profiles_in.commands import check_commands, read_commands, read_time
+from des_cli.profiles_in.conditioning import (
+    Conditioning,
+    check_smoothing,
+    read_conditioning,
+    refuse_beside_expressions,
+)
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.g_commands import read_g
 from des_cli.profiles_in.machine_yaml import (
@@ -52,11 +58,17 @@ class Reading:
         Where files stand that the profile refers to.
     digest : hashlib hash
         Takes the bytes of the profile and of every file that it refers to.
+    conditioning : Conditioning
+        What is done to recorded samples.
+    remarks : list of str
+        What reading changed of the file, a sentence each.
     """
 
     label: str
     folder: Path
     digest: Any
+    conditioning: Conditioning = field(default_factory=Conditioning)
+    remarks: list[str] = field(default_factory=list)
 
     def referred(self, name: str, place: str) -> tuple[str, str]:
         """Return label and text of a file that the profile refers to.
@@ -149,10 +161,13 @@ def finish(
         machine = read_machine(document, reading, findings)
     except DesError as error:
         unread = error
+    reading.conditioning = read_conditioning(document, findings)
     try:
         commands = commands_of(document, reading, findings)
     except DesError as error:
         unread = error if unread is None else ProfileError([*unread.problems, *error.problems])
+    if commands is not None:
+        check_smoothing(reading.conditioning, commands[0], findings)
     reduction = read_reduction(document.reduction, findings)
     initial = read_initial(document.initial, commands, findings)
     if unread is not None and findings.problems:
@@ -171,6 +186,8 @@ def finish(
         initial_angle=initial,
         reduction=reduction,
         sha256=reading.digest.hexdigest(),
+        smooth_cutoff_hz=reading.conditioning.cutoff_hz,
+        remarks=tuple(reading.remarks),
     )
 
 
@@ -230,6 +247,8 @@ def document_commands(
             if sections["samples"] is None
             else _sampled(sections["samples"], reading, findings)
         )
+    if given:
+        refuse_beside_expressions(present, given[0], findings)
     if given == ["g"]:
         usable = sections["g"] is not None and ("time" not in present or sections["time"])
         return read_g(sections["g"], sections["time"], findings) if usable else None
@@ -250,4 +269,4 @@ def document_commands(
 
 def _sampled(section: Any, reading: Reading, findings: Findings) -> Commands:
     label, text = reading.referred(section.file, findings.root.place_of(["samples", "file"]))
-    return parse_samples(text, label, section.columns)
+    return parse_samples(text, label, section.columns, reading.conditioning, reading.remarks)

@@ -24,6 +24,7 @@ _PLAIN = (
     "max_iterations",
     "ends",
     "objective",
+    "allow_change",
     "tolerance",
 )
 _WEIGHTS = ("r2", "tracking")

@@ -21,6 +21,13 @@ from des_cli.model.profile import (
     Method,
     Objective,
 )
+from des_cli.profiles_in.conditioning_schema import (
+    BodyAxes,
+    EulerOrder,
+    Resample,
+    Smooth,
+    Trim,
+)
 from des_cli.profiles_in.expression import Expression, ExpressionError, parse_expression
 from des_cli.profiles_in.g_schema import g_section
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE, MachineSection
@@ -161,7 +168,13 @@ BodyRates = measured(
 G = g_section(_Number | _Text | _Segments, Command)
 
 
-class Samples(Section):
+class SamplesReading(Section):
+    """How the samples of a CSV file are read."""
+
+    euler: EulerOrder = OMITTED
+
+
+class Samples(SamplesReading):
     """Commands recorded in a CSV file beside the profile."""
 
     file: Annotated[str, Field(strict=True, min_length=1)]
@@ -252,6 +265,10 @@ class ReductionBase(Section):
     ends: Ends = OMITTED
     objective: Objective = OMITTED
     optimise: Annotated[list[FreeParameter], AfterValidator(_check_unequal)] = OMITTED
+    allow_change: Annotated[
+        Positive,
+        Field(description="share of the recorded seat rate or G that may change first"),
+    ] = OMITTED
     tolerance: Positive = OMITTED
 
 
@@ -281,6 +298,11 @@ class ProfileSettings(Section):
     machine: MachineChoice = DEFAULT_MACHINE
     seat: Seat = OMITTED  # type: ignore[valid-type]
     initial: Initial = OMITTED  # type: ignore[valid-type]
+    samples: SamplesReading = OMITTED
+    trim: Trim = OMITTED  # type: ignore[valid-type]
+    axes: BodyAxes = OMITTED
+    resample: Resample = OMITTED  # type: ignore[valid-type]
+    smooth: Smooth = OMITTED
     reduction: ReductionSection = OMITTED  # type: ignore[valid-type]
 
 
@@ -295,6 +317,8 @@ class ProfileDocument(ProfileSettings):
     body_rates: BodyRates = OMITTED  # type: ignore[valid-type]
     g: G = OMITTED  # type: ignore[valid-type]
     samples: Samples = OMITTED
+    trim: Trim = OMITTED  # type: ignore[valid-type]
+    resample: Resample = OMITTED  # type: ignore[valid-type]
     reduction: ReductionSection = OMITTED  # type: ignore[valid-type]
 
 

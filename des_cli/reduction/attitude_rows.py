@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from des_cli.kinematics.attitude import rotation
 from des_cli.kinematics.chain import Chain
 from des_cli.model.arrays import Floats
+from des_cli.model.motion import Shortfall
 from des_cli.solver.program import Rows
 
 
@@ -20,16 +22,22 @@ class AttitudeRows(Rows):
     chain : Chain
     reference : (n, 3) array
         Joint angles whose attitude is kept [rad].
+    shortfall : Shortfall or None
+        What is asked for beyond that.
     most : float
         Largest angle between the attitudes [deg].
     """
 
-    def __init__(self, chain: Chain, reference: Floats, most: float) -> None:
+    def __init__(
+        self, chain: Chain, reference: Floats, shortfall: Shortfall | None, most: float
+    ) -> None:
         super().__init__(np.arange(len(reference)))
         self.frame = chain.transform
         self.turn = self.frame.gradient()
         self.bend = self.turn.gradient()
         self.target = self.frame(reference)[:, :3, :3]
+        if shortfall is not None:
+            self.target = self.target @ rotation(shortfall.attitude)
         self.per_chord = 1.0 / (8.0 * np.sin(0.5 * np.radians(most)) ** 2)
 
     def _off(self, x: Floats) -> Floats:

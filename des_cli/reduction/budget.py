@@ -85,7 +85,8 @@ def _with_budgets(problem: Problem, budgets: Sequence[Budget]) -> Transcription:
     for budget in budgets:
         most = budget.most * (1.0 - ROOM)
         if budget.metric == "attitude_error_max_deg":
-            grid.rows.append(AttitudeRows(problem.chain, problem.reference.angle, most))
+            asked = problem.reference.angle, problem.shortfall
+            grid.rows.append(AttitudeRows(problem.chain, *asked, most))
         elif budget.metric == "seat_angular_acceleration_peak_ratio":
             grid.rows.append(SeatAccelerationRows(grid, most))
         else:

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.motion import Motion
+from des_cli.model.motion import Motion, Shortfall
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.program import Indices
@@ -55,6 +55,19 @@ def coarsen(problem: Problem, every: int) -> Problem:
         problem,
         desired=_at(problem.desired, kept),
         asked=None if problem.asked is None else _at(problem.asked, kept),
+        shortfall=None if problem.shortfall is None else _shortfall_at(problem.shortfall, kept),
+    )
+
+
+def _shortfall_at(missing: Shortfall, kept: Indices) -> Shortfall:
+    def sides(values: Floats) -> Floats:
+        return np.stack([values[kept[:-1], 0], values[kept[1:] - 1, 1]], axis=1)
+
+    return Shortfall(
+        sides(missing.seat_rate),
+        sides(missing.seat_angular_acceleration),
+        sides(missing.seat_g),
+        missing.attitude[kept],
     )
 
 

@@ -4,7 +4,7 @@ Every inequality is scaled so that its bounds are -1 and 1; the method in
 ``interior`` treats them all alike. The machine's limits hold between samples
 too: with the acceleration constant over each interval, bounds on the rates at
 the samples and on their change over the intervals are bounds everywhere, and an
-angle's bound is drawn in by the most that its parabola can bulge.
+angle's bound is drawn in where its parabola can bulge beyond the samples.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Machine
+from des_cli.model.motion import Motion
 from des_cli.reduction.rates import Rates
 from des_cli.solver.program import Rows
 
@@ -22,33 +23,54 @@ whoever differentiates a table of positions twice."""
 
 
 class AngleRows(Rows):
-    """Angles inside their limits.
+    """Angles inside their limits, at samples and between them.
+
+    Between two samples an angle is a parabola. Where the rate changes its sign it goes
+    beyond both ends, by at most ``acceleration h^2 / 8``, upwards where the rate falls
+    and downwards where it rises: on that side the bound of the two samples is drawn in,
+    though never inside the desired angle, which keeps the limit with its parabola.
 
     Parameters
     ----------
     machine : Machine
-    step : (n - 1,) array
-        [s]
+    desired : Motion
+        Inside the limits.
     unknowns : int
         3 + m.
     """
 
-    def __init__(self, machine: Machine, step: Floats, unknowns: int) -> None:
-        super().__init__(np.arange(len(step) + 1))
+    def __init__(self, machine: Machine, desired: Motion, unknowns: int) -> None:
+        super().__init__(np.arange(len(desired.t)))
         angle = np.array([limit.angle for limit in machine.limits])
-        bulge = np.array([limit.acceleration for limit in machine.limits]) * step.max() ** 2 / 8.0
         bounded = np.flatnonzero(np.isfinite(angle))
+        limit = angle[bounded] * (1.0 - MARGIN)
+        acceleration = np.array([limit.acceleration for limit in machine.limits])[bounded]
+        bulge = acceleration * desired.step[:, None] ** 2 / 8.0
+        at = desired.angle[:, bounded]
+        sides = []
+        for sign in (1.0, -1.0):
+            start, end = sign * desired.rate_start[:, bounded], sign * desired.rate_end[:, bounded]
+            beyond = np.where((start > 0.0) & (end < 0.0), bulge, 0.0)
+            sides.append(np.maximum(limit - _next_to(beyond), np.minimum(sign * at, limit)))
+        most, least = sides[0], -sides[1]
+        self._middle, half = 0.5 * (most + least), 0.5 * (most - least)
+        self._bounded, self._per_half = bounded, 1.0 / half
         self._jacobian = np.zeros((len(self.node), len(bounded), unknowns))
-        room = (angle * (1.0 - MARGIN) - bulge)[bounded]
-        self._jacobian[:, np.arange(len(bounded)), bounded] = 1.0 / room
+        self._jacobian[:, np.arange(len(bounded)), bounded] = self._per_half
 
     def value(self, x: Floats) -> Floats:
-        """Return the angles over their limits."""
-        return np.asarray((self._jacobian @ x[:, :, None])[:, :, 0])
+        """Return the angles from the middle of their bounds, over half of their distance."""
+        return np.asarray((x[:, self._bounded] - self._middle) * self._per_half)
 
     def jacobian(self, x: Floats) -> tuple[Floats, ...]:
         """Return the constant coefficients."""
         return (self._jacobian,)
+
+
+def _next_to(intervals: Floats) -> Floats:
+    """Return the largest value of the intervals next to each sample, (n, k) of (n - 1, k)."""
+    edge = np.zeros((1, intervals.shape[1]))
+    return np.maximum(np.vstack([intervals, edge]), np.vstack([edge, intervals]))
 
 
 class RateRows(Rows):
@@ -160,7 +182,7 @@ class JerkRows(Rows):
         return self.rates.bend(x, weight)
 
 
-def limit_rows(machine: Machine, rates: Rates, step: Floats, unknowns: int) -> tuple[Rows, ...]:
+def limit_rows(machine: Machine, rates: Rates, desired: Motion, unknowns: int) -> tuple[Rows, ...]:
     """Return the machine's limits on rates, accelerations, angles and jerks.
 
     Parameters
@@ -168,15 +190,16 @@ def limit_rows(machine: Machine, rates: Rates, step: Floats, unknowns: int) -> t
     machine : Machine
     rates : Rates
         Of a motion without rate steps: one point at each sample.
-    step : (n - 1,) array
-        [s]
+    desired : Motion
+        Inside the limits.
     unknowns : int
         3 + m.
     """
+    step = desired.step
     rows = (
         RateRows(machine, rates, step),
         AccelerationRows(machine, rates, step),
-        AngleRows(machine, step, unknowns),
+        AngleRows(machine, desired, unknowns),
     )
     smooth = any(np.isfinite(limit.jerk) for limit in machine.limits) and len(step) > 1
     return (*rows, JerkRows(machine, rates, step)) if smooth else rows

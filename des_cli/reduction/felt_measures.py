@@ -10,7 +10,9 @@ from abc import abstractmethod
 import numpy as np
 
 from des_cli.kinematics.coriolis import coriolis, coriolis_derivatives
+from des_cli.kinematics.seat import PILOT_SIGNS
 from des_cli.model.arrays import Floats
+from des_cli.model.motion import Shortfall
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.program import Expansion, Measure, Rows
 from des_cli.units import STANDARD_GRAVITY_M_S2
@@ -35,6 +37,8 @@ class IntervalDeviation(Measure):
         self.target = self._on_sides(
             reference.angle, reference.rate_start, reference.rate_end, reference.acceleration
         )
+        if grid.problem.shortfall is not None:
+            self.target = self.target + self.missing(grid.problem.shortfall)
         size = float(reference.step.sum())
         if relative:
             size = float(self.half @ np.sum(self.target**2, axis=(1, 2)))
@@ -43,6 +47,10 @@ class IntervalDeviation(Measure):
     @abstractmethod
     def prepare(self) -> None:
         """Take from the grid's problem what the vector needs."""
+
+    @abstractmethod
+    def missing(self, shortfall: Shortfall) -> Floats:
+        """Return what is asked for beyond the reference, (n - 1, 2, 3)."""
 
     @abstractmethod
     def vector(self, angle: Floats, rate: Floats, acceleration: Floats) -> Floats:
@@ -125,6 +133,10 @@ class SeatGDeviation(IntervalDeviation):
         self.reach, self.curl = chain.position_gradient, chain.position_hessian
         self.twist = self.curl.gradient()
 
+    def missing(self, shortfall: Shortfall) -> Floats:
+        """Return the specific force that is asked for and not made [g]."""
+        return np.asarray(shortfall.seat_g * PILOT_SIGNS)
+
     def vector(self, angle: Floats, rate: Floats, acceleration: Floats) -> Floats:
         """Return the specific force [g]."""
         products = rate[:, :, None] * rate[:, None, :]
@@ -163,6 +175,10 @@ class SeatAccelerationDeviation(IntervalDeviation):
         """Take the joints' axes."""
         self.axes = self.grid.problem.chain.seat_axes
         self.turn = self.axes.gradient()
+
+    def missing(self, shortfall: Shortfall) -> Floats:
+        """Return the angular acceleration that is asked for and not made [rad/s^2]."""
+        return shortfall.seat_angular_acceleration
 
     def vector(self, angle: Floats, rate: Floats, acceleration: Floats) -> Floats:
         """Return the sum of the Euler terms and the Coriolis vector."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from des_cli.kinematics.attitude import geodesic_angle
+from des_cli.kinematics.attitude import geodesic_angle, rotation
 from des_cli.kinematics.chain import Chain, seat_rotation
-from des_cli.kinematics.response import respond_on
+from des_cli.kinematics.response import respond_on, with_shortfall
 from des_cli.model.arrays import Floats
 from des_cli.model.metric import MetricKey
-from des_cli.model.motion import Motion, integrate_sides
+from des_cli.model.motion import Motion, Shortfall, integrate_sides
 from des_cli.model.response import Response
 
 
@@ -26,6 +26,8 @@ class Deviation:
         Of the two: the seat may be fixed otherwise in the modified one.
     control : (n, m) array, optional
         Factors on the rates; of a free motion there are none.
+    shortfall : Shortfall, optional
+        What is asked for beyond the reference; ``before`` holds it already.
     """
 
     def __init__(
@@ -36,10 +38,11 @@ class Deviation:
         after: Response,
         chains: tuple[Chain, Chain],
         control: Floats | None = None,
+        shortfall: Shortfall | None = None,
     ) -> None:
         self.reference, self.modified = reference, modified
         self.before, self.after = before, after
-        self.chains, self.control = chains, control
+        self.chains, self.control, self.shortfall = chains, control, shortfall
 
     @classmethod
     def between(
@@ -49,13 +52,15 @@ class Deviation:
         chains: tuple[Chain, Chain],
         gravity: float,
         control: Floats | None = None,
+        shortfall: Shortfall | None = None,
     ) -> Deviation:
         """Evaluate both responses under a gravity [m/s^2] and compare."""
         before, after = (
             respond_on(chain, gravity, motion)
             for chain, motion in zip(chains, (reference, modified), strict=True)
         )
-        return cls(reference, modified, before, after, chains, control)
+        before = with_shortfall(before, shortfall)
+        return cls(reference, modified, before, after, chains, control, shortfall)
 
     def value(self, metric: MetricKey) -> float:
         """Return a metric, in its unit."""
@@ -96,6 +101,8 @@ class Deviation:
                         self.chains, (self.reference, self.modified), strict=True
                     )
                 )
+                if self.shortfall is not None:
+                    one = one @ rotation(self.shortfall.attitude)
                 return float(np.degrees(np.max(geodesic_angle(one, other))))
 
     @property

@@ -83,6 +83,8 @@ class SeatRateDeviation(Measure):
         reference = grid.problem.reference
         rate, angle = reference.rate_sides, reference.angle_sides
         sides = (rate[..., None, :] @ axes(angle))[..., 0, :]
+        if grid.problem.shortfall is not None:
+            sides = sides + grid.problem.shortfall.seat_rate
         half = 0.5 * reference.step
         size = float(half @ np.sum(sides**2, axis=(1, 2)))
         scale = 1.0 / (budget**2 * max(size, 1e-300))

@@ -18,7 +18,7 @@ import numpy as np
 from des_cli.kinematics.chain import Chain, chain_of
 from des_cli.model.arrays import Flags, Floats, freeze
 from des_cli.model.machine import JOINTS, Machine
-from des_cli.model.motion import Motion
+from des_cli.model.motion import DesiredMotion, Motion, Shortfall
 from des_cli.model.profile import Axes, Control, Ends, JacobianAt, Profile
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
@@ -54,6 +54,8 @@ class Problem:
     asked : Motion, optional
         What the profile asks for, on the same samples, where ``desired`` is its
         executable replacement.
+    shortfall : Shortfall, optional
+        What the profile asks for beyond that.
     """
 
     desired: Motion
@@ -68,6 +70,7 @@ class Problem:
     machine: Machine | None = None
     gravity: float = STANDARD_GRAVITY_M_S2
     asked: Motion | None = None
+    shortfall: Shortfall | None = None
 
     def __post_init__(self) -> None:
         freeze(self, "r1", (3, 3))
@@ -95,14 +98,14 @@ def control_weight(control: Control, r2: Floats) -> Floats:
     return np.array([r2.mean()]) if control == "scalar" else r2 / 3.0
 
 
-def pose_problem(profile: Profile, desired: Motion, asked: Motion | None = None) -> Problem:
+def pose_problem(profile: Profile, desired: Motion, asked: DesiredMotion | None = None) -> Problem:
     """Make the problem that a profile asks for along a desired motion.
 
     Parameters
     ----------
     profile : Profile
     desired : Motion
-    asked : Motion, optional
+    asked : DesiredMotion, optional
         What budgets are measured against, where it is not ``desired``.
     """
     wanted = profile.reduction
@@ -121,5 +124,6 @@ def pose_problem(profile: Profile, desired: Motion, asked: Motion | None = None)
         ends=wanted.ends,
         machine=profile.machine if wanted.limits == "enforce" else None,
         gravity=profile.machine.gravity,
-        asked=asked,
+        asked=None if asked is None else asked.motion,
+        shortfall=None if asked is None else asked.shortfall,
     )

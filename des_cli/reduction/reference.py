@@ -36,3 +36,20 @@ def sample_motion(motion: Motion, t: Floats) -> tuple[Floats, Floats, Floats]:
     rate = (r0 + u * (2.0 * square + 3.0 * u * cube)) / h
     acceleration = (2.0 * square + 6.0 * u * cube) / h**2
     return angle, rate, acceleration
+
+
+def sample_sides(t: Floats, sides: Floats, times: Floats) -> Floats:
+    """Return values that are linear over each interval at any times, (q, 3).
+
+    Parameters
+    ----------
+    t : (n,) array
+        Samples [s].
+    sides : (n - 1, 2, 3) array
+        At both ends of every interval.
+    times : (q,) array
+        [s]
+    """
+    k = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 2)
+    u = ((times - t[k]) / (t[k + 1] - t[k]))[:, None]
+    return np.asarray((1.0 - u) * sides[k, 0] + u * sides[k, 1])

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from des_cli.model.machine import Seat
-from des_cli.model.motion import Motion
+from des_cli.model.metric import Budget
+from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile, Reduction
-from des_cli.model.solution import Solution
+from des_cli.model.solution import Solution, Status
+from des_cli.model.stage import OnStage, untold
 from des_cli.reduction.budget import pose_budget, spend_budgets
+from des_cli.reduction.change import Change
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.free.method import find_free_motion
 from des_cli.reduction.free.problem import FreeTask
@@ -38,6 +41,8 @@ class Found:
         That problem as it was solved: a budget and the zero method bring their own
         weights. None for a free motion, which solves another.
     solution : Solution
+    budgets : tuple of Budget
+        As they were kept: those of the profile, or what is added to an allowed change.
     """
 
     desired: Motion
@@ -45,31 +50,50 @@ class Found:
     problem: Problem
     posed: Problem | None
     solution: Solution
+    budgets: tuple[Budget, ...]
 
 
-def find_motion(profile: Profile, reference: Motion, report: Report | None = None) -> Found:
+def find_motion(
+    profile: Profile,
+    asked: DesiredMotion,
+    target: Motion,
+    report: Report | None = None,
+    on_stage: OnStage = untold,
+) -> Found:
     """Find the modified motion that a profile asks for.
 
     Parameters
     ----------
     profile : Profile
         Consistent (``consistency.require_consistent``).
-    reference : Motion
-        What the profile asks of the joints.
+    asked : DesiredMotion
+        What the profile asks for: the record.
+    target : Motion
+        What the motion begins from: the same, or what conditioning made of it.
     report : callable, optional
         Called with each line of the solver's log.
+    on_stage : callable, optional
+        Called with what is done next.
     """
     reduction = profile.reduction
+    on_stage("motion inside the limits")
     if moves_freely(reduction):
-        free = find_free_motion(FreeTask.of(profile, reference), report)
+        task = FreeTask.of(profile, asked.motion, target, asked.shortfall)
+        free = find_free_motion(task, report, on_stage)
         problem = pose_problem(profile, free.desired)
-        return Found(free.desired, free.seat, problem, None, free.solution)
-    desired, trouble = executable_motion(profile, reference)
-    problem = pose_problem(profile, desired, reference)
-    if trouble:
-        return Found(desired, profile.seat, problem, problem, not_attempted(problem, trouble))
-    posed, solution = solve(problem, reduction, report)
-    return Found(desired, profile.seat, problem, posed, solution)
+        return Found(free.desired, free.seat, problem, None, free.solution, free.budgets)
+    desired, trouble = executable_motion(profile, target)
+    problem = pose_problem(profile, desired, asked)
+    change = Change.between(profile, asked, desired)
+    refusal = change.refusal(reduction)
+    if trouble or refusal:
+        status: Status = "infeasible" if trouble else "changed"
+        solution = not_attempted(problem, trouble or refusal, status)
+        return Found(desired, profile.seat, problem, problem, solution, reduction.budget)
+    on_stage("factors on the desired rates")
+    budgets = change.widened(reduction)
+    posed, solution = solve(problem, replace(reduction, budget=budgets), report)
+    return Found(desired, profile.seat, problem, posed, solution, budgets)
 
 
 def moves_freely(reduction: Reduction) -> bool:
@@ -85,11 +109,11 @@ def moves_freely(reduction: Reduction) -> bool:
     return reduction.control == "free" or per_joint
 
 
-def executable_motion(profile: Profile, reference: Motion) -> tuple[Motion, str]:
+def executable_motion(profile: Profile, target: Motion) -> tuple[Motion, str]:
     """Return the motion that factors act on, and why there is none that keeps the limits."""
     if profile.reduction.limits != "enforce":
-        return reference, ""
-    return nearest_executable(profile.machine, reference)
+        return target, ""
+    return nearest_executable(profile.machine, target)
 
 
 def solve(
@@ -122,12 +146,12 @@ def solve(
     return problem, find_optimum(problem, search)
 
 
-def not_attempted(problem: Problem, why: str) -> Solution:
-    """Return the solution of a problem that has no executable motion to start from."""
+def not_attempted(problem: Problem, why: str, status: Status) -> Solution:
+    """Return the solution of a problem that has no motion to start from, or a changed one."""
     n = len(problem.desired.t)
     nan = float("nan")
     return Solution(
-        status="infeasible",
+        status=status,
         message=why,
         control=np.ones((n, problem.controls)),
         modified=problem.desired,

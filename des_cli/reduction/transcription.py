@@ -73,7 +73,7 @@ class Transcription:
         self.pinned = self._pins()
         self.rows: list[Rows] = []
         if problem.machine is not None:
-            self.rows += limit_rows(problem.machine, self.rates, motion.step, 3 + self.m)
+            self.rows += limit_rows(problem.machine, self.rates, motion, 3 + self.m)
         self.offset = np.zeros((len(self.points.node), 3))
         """Added to the Coriolis vector at the points where the cost weighs it."""
         self.budgets: list[Measure] = []

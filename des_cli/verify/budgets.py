@@ -21,8 +21,9 @@ BUDGET_TOLERANCE = 1e-9
 SPENT, SPENT_OF_TORN = 0.95, 0.6
 """Share of a budget from which on it may hold a motion. A method keeps a little clear of
 its budgets, and more where a table of few rows is not quite its motion. Where the table
-asked for is torn, its positions jump by what no rate tells and a method that looks between
-the samples sees more than the samples have: more of a budget may seem to be left."""
+asked for is torn, its positions jump by what no rate tells, or where it was so rough that
+its user allowed a change, a method that looks between the samples sees more than the
+samples have: more of a budget may seem to be left."""
 
 TORN = 0.05
 """Largest difference of a mean rate by positions from that by rates, over the joint's
@@ -94,7 +95,8 @@ def keeps_budgets(claim: Claim, felt: Felt) -> bool:
 
 def spent_budgets(claim: Claim) -> list[Budget]:
     """Return the budgets on integrals that may hold the motion: those that are spent."""
-    share = SPENT_OF_TORN if _torn(claim.asked) else SPENT
+    rough = claim.reduction.allow_change is not None or _torn(claim.asked)
+    share = SPENT_OF_TORN if rough else SPENT
     return [
         budget
         for budget in claim.reduction.budget

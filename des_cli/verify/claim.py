@@ -9,10 +9,11 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
-from des_cli.model.motion import Motion
+from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
+from des_cli.verify.asked import as_asked
 from des_cli.verify.felt import Felt, SeatChain
 
 
@@ -32,9 +33,14 @@ class Claim:
     solution : Solution
     posed : Problem, optional
         The problem of factors on the desired rates, as it was solved, along ``desired``;
-        None of a free motion.
+        None of a free motion, and of one per joint with budgets, which is found as a free
+        one.
     commands : Motion, optional
         The motion of the command table, where it has leads before and after.
+    target : Motion, optional
+        What conditioning made of the motion asked for, where it did.
+    shortfall : Shortfall, optional
+        What is asked for beyond the motion asked for.
     """
 
     profile: Profile
@@ -44,6 +50,8 @@ class Claim:
     solution: Solution
     posed: Problem | None = None
     commands: Motion | None = None
+    target: Motion | None = None
+    shortfall: Shortfall | None = None
 
     @property
     def reduction(self) -> Reduction:
@@ -87,13 +95,14 @@ class Claim:
 
     @cached_property
     def before(self) -> Felt:
-        """The motion asked for at all states."""
-        return self.chain_before.along(self.asked)
+        """What is asked for at all states."""
+        made = self.chain_before.along(self.asked)
+        return as_asked(made, self.profile, self.shortfall)
 
     @cached_property
     def executable(self) -> Felt:
         """The desired motion at all states."""
-        if self.desired is self.asked:
+        if self.desired is self.asked and self.shortfall is None:
             return self.before
         return self.chain_before.along(self.desired)
 

@@ -56,13 +56,15 @@ def _same_motion(one: Motion, other: Motion) -> bool:
 def check_ends(claim: Claim) -> list[Check]:
     """Compare both ends with what they are to match.
 
-    A free motion matches the motion that was asked for; factors act on the desired
-    motion and match its rates. The study's sweep matches the first angles alone.
+    A free motion matches the motion that was asked for, as conditioned; factors act on
+    the desired motion and match its rates. The study's sweep matches the first angles
+    alone.
     """
     ends, modified = claim.reduction.ends, claim.modified
-    target = claim.asked if claim.posed is None else claim.desired
+    begins = claim.target or claim.asked
+    target = begins if claim.posed is None else claim.desired
     kept = [f"{joint}_start" not in claim.reduction.optimise for joint in JOINTS]
-    start = (modified.angle - claim.asked.angle)[0, kept]
+    start = (modified.angle - begins.angle)[0, kept]
     checks = [_same("start.angle", "change of the angles at the start [rad]", start)]
     if claim.reduction.algorithm == "report-sweep":
         return checks

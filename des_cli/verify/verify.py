@@ -10,9 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from des_cli.model.machine import Seat
 from des_cli.model.motion import Motion
-from des_cli.model.profile import Profile
 from des_cli.model.run import Check
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
@@ -32,33 +30,13 @@ from des_cli.verify.occupant import check_occupant
 from des_cli.verify.study_optimality import check_optimality
 
 
-def verify(
-    profile: Profile,
-    asked: Motion,
-    desired: Motion,
-    seat: Seat,
-    solution: Solution,
-    posed: Problem | None = None,
-    commands: Motion | None = None,
-) -> tuple[Check, ...]:
-    """Check a solution.
+def verify(claim: Claim) -> tuple[Check, ...]:
+    """Check what is claimed of a solution.
 
     Parameters
     ----------
-    profile : Profile
-        Its reduction says which checks apply.
-    asked : Motion
-        What the profile asks for.
-    desired : Motion
-        The same, or the nearest motion inside the limits.
-    seat : Seat
-        As it is fixed in the modified motion.
-    solution : Solution
-    posed : Problem, optional
-        The problem of factors on the desired rates, as it was solved; None of a free
-        motion, and of one per joint with budgets, which is found as a free one.
-    commands : Motion, optional
-        What the command table plays, where that is the modified motion with leads.
+    claim : Claim
+        The reduction of its profile says which checks apply.
 
     Returns
     -------
@@ -66,15 +44,12 @@ def verify(
         Each with a key of its own. Values that are not finite, or other sample times,
         end the checks.
     """
-    if posed is not None:
-        desired = posed.desired
-    claim = Claim(profile, asked, desired, seat, solution, posed, commands)
-    first = [_finite(solution, claim.table)]
+    first = [_finite(claim.solution, claim.table)]
     if first[0].ok:
         first.append(check_times(claim))
     if not all(check.ok for check in first):
         return tuple(first)
-    own = _of_free(claim) if posed is None else _of_factors(claim, posed)
+    own = _of_free(claim) if claim.posed is None else _of_factors(claim, claim.posed)
     return (
         *first,
         *check_limits(claim),

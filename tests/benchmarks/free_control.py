@@ -81,7 +81,8 @@ def repeated_cobra(intervals: int) -> Motion:
 def task_of(intervals: int) -> FreeTask:
     """Return the problem of the module's docstring."""
     reduction = Reduction(budget=BUDGETS, ends="match-start")
-    return FreeTask(DES, Seat(), reduction, repeated_cobra(intervals), DES.limits)
+    motion = repeated_cobra(intervals)
+    return FreeTask(DES, Seat(), reduction, motion, motion, DES.limits)
 
 
 class Case:

@@ -251,7 +251,7 @@ def test_text_of_a_profile_has_a_line_a_sample(invoke, small: str) -> None:
         (["--fork-deg", "nan"], "--fork-deg"),
         (["--cab-rad-s", "1e300"], "--cab-rad-s"),
         (["--arm", "3"], "--arm"),
-        (["cobra", "--arm-deg", "3", "--machine", "des"], "--arm-deg, --machine"),
+        (["cobra", "--arm-deg", "3", "--cab-rpm", "1"], "--arm-deg, --cab-rpm"),
         (["--set", "time.step_s=1"], "--set"),
     ],
     ids=lambda value: "_".join(value) if isinstance(value, list) else "",
@@ -293,6 +293,13 @@ def test_a_bad_machine_is_named_with_its_place(
     assert (result.exit_code, result.stdout) == (3, "")
     assert said in result.stderr
     assert all(line.startswith("own.yaml") for line in result.stderr.splitlines())
+
+
+def test_the_motion_of_a_profile_on_another_machine(invoke) -> None:
+    arguments = ("kinematics", "cobra", "--set", "time.step_s=1", "--format", "csv")
+    (set_so,) = {invoke(*arguments, "--set", "machine=johnsville").stdout}
+    assert invoke(*arguments, "--machine", "johnsville").stdout == set_so
+    assert invoke(*arguments).stdout != set_so
 
 
 def test_a_machine_that_is_not_there(invoke) -> None:

@@ -215,10 +215,17 @@ def test_every_violation_is_named_even_when_quiet(invoke, write_profile, tmp_pat
 
 def test_violations_and_notices_are_the_same_everywhere(invoke, write_profile, tmp_path) -> None:
     fast = write_profile("fast", arm_rpm='"8.8 + 20*t"', limits="enforce", r2="0.01").name
-    result = invoke("reduce", fast, "--no-plots", "--control", "per-joint")
+    command = ("reduce", fast, "--no-plots", "--control", "per-joint")
+    result = invoke(*command)
+    assert result.exit_code == 5
+    assert "the record is changed by" in result.stderr
+    assert not (tmp_path / "runs").exists()
+    result = invoke(*command, "--allow-change", "0.5")
     assert result.exit_code == 0, result.stderr
+    assert "changed first  limits seat rate" in result.stderr
     metrics = metrics_of(tmp_path / "runs" / "fast")
     assert metrics["executable"]["replaced"] is True
+    assert metrics["solver"]["allow_change"] == 0.5
     assert metrics["executable"]["joint_change_max_rad"]["arm"] > 0.1
     assert any("desired arm acceleration" in line for line in metrics["violations"])
     assert not any(line.startswith("modified") for line in metrics["violations"])

@@ -10,8 +10,10 @@ from scipy.spatial.transform import Rotation
 from des_cli.kinematics.attitude import (
     geodesic_angle,
     integrate_attitude,
+    quaternion_product,
     rotation,
     rotation_of_quaternion,
+    rotation_vector,
 )
 from des_cli.model.profile import BodyRates
 
@@ -101,3 +103,26 @@ def test_attitudes_stay_rotations():
     found = integrate_attitude(np.diff(t), sampled(tumble, t))
     np.testing.assert_allclose(np.swapaxes(found, 1, 2) @ found - np.eye(3), 0.0, atol=1e-12)
     np.testing.assert_allclose(np.linalg.det(found), 1.0, atol=1e-12)
+
+
+def test_a_rotation_vector_is_scipys_at_every_angle():
+    rng = np.random.default_rng(8)
+    axis = rng.normal(size=(60, 3))
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    angle = np.concatenate([[0.0, 1e-12, 1e-6, np.pi - 1e-9], rng.uniform(0.0, 3.1, 56)])
+    one = Rotation.random(60, random_state=3)
+    other = one * Rotation.from_rotvec(axis * angle[:, None])
+    found = rotation_vector(one.as_matrix(), other.as_matrix())
+    np.testing.assert_allclose(found, axis * angle[:, None], atol=1e-7)
+    np.testing.assert_allclose(
+        one.as_matrix() @ rotation(found), other.as_matrix(), rtol=0.0, atol=1e-14
+    )
+
+
+def test_the_product_of_quaternions_is_scipy_s():
+    vectors = np.random.default_rng(5).normal(size=(2, 6, 3))
+    one, other = (Rotation.from_rotvec(each) for each in vectors)
+    w_first = [3, 0, 1, 2]
+    product = quaternion_product(one.as_quat()[:, w_first], other.as_quat()[:, w_first])
+    found = Rotation.from_quat(product[:, [1, 2, 3, 0]])
+    np.testing.assert_allclose(found.as_matrix(), (one * other).as_matrix(), atol=1e-14)

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
+from des_cli.kinematics.attitude import rotation
 from des_cli.kinematics.chain import chain_of, seat_rotation
 from des_cli.kinematics.desired import make_desired
-from des_cli.kinematics.response import respond
+from des_cli.kinematics.response import respond, respond_as_asked
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.profile import BodyRates, JointCommands, Profile
@@ -258,6 +259,50 @@ class TestBodyRates:
         size = np.linalg.norm(desired.residual, axis=1)
         assert (size[~desired.damped] < 1e-9).all()
 
+    def test_what_is_held_back_is_the_shortfall(self):
+        """The arm would turn at 6 rad/s for a second: half of that is more than it can."""
+        t = np.linspace(0.0, 4.0, 401)
+
+        def at(times):
+            bump = np.where(np.abs(times - 2.0) < 0.5, np.cos(np.pi * (times - 2.0)) ** 2, 0.0)
+            return np.outer(6.0 * bump, [0.0, 0.0, 1.0]) + np.array([0.1, 0.05, 0.3])
+
+        command = BodyRates(at(t[:-1]), at(0.5 * (t[:-1] + t[1:])), at(t[1:]))
+        profile = body_profile(t, command, (0.1, 0.2, -0.1))
+        desired = make_desired(profile)
+        assert desired.shortfall is not None
+        asked = respond_as_asked(DES, Seat(), desired)
+        recorded = np.stack([command.start, command.end], axis=1)
+        np.testing.assert_allclose(asked.seat_rate, recorded, atol=1e-12)
+        slope = (command.end - command.start) / 0.01
+        made = respond(DES, Seat(), desired.motion)
+        held = np.any(np.abs(desired.shortfall.seat_rate) > 1e-9, axis=(1, 2))
+        assert 20 < held.sum() < 110
+        np.testing.assert_allclose(
+            asked.seat_angular_acceleration[held],
+            np.broadcast_to(slope[held, None], (held.sum(), 2, 3)),
+            atol=1e-10,
+        )
+        np.testing.assert_array_equal(
+            asked.seat_angular_acceleration[~held][:, 0],
+            made.seat_angular_acceleration[~held][:, 0],
+        )
+        flown = seat_rotation(chain_of(DES, Seat()), desired.motion.angle)
+        solution = solve_ivp(
+            lambda s, r: (r.reshape(3, 3) @ skew(at(np.array([s]))[0])).reshape(-1),
+            (0.0, 4.0),
+            flown[0].reshape(-1),
+            t_eval=t,
+            rtol=1e-10,
+            atol=1e-12,
+            max_step=0.01,
+        )
+        wished = solution.y.T.reshape(-1, 3, 3)
+        off = flown @ rotation(desired.shortfall.attitude) - wished
+        assert np.abs(off).max() < 2e-6
+        quiet = BodyRates(*(0.1 * part for part in (command.start, command.middle, command.end)))
+        assert make_desired(body_profile(t, quiet)).shortfall is None
+
     def test_against_a_recorded_attitude(self):
         t = np.linspace(0.0, 5.0, 101)
         command = demand(smooth, t)
@@ -271,6 +316,10 @@ class TestBodyRates:
         assert found.recorded_attitude_error == pytest.approx(0.02, abs=1e-5)
         bare = make_desired(body_profile(t, command, angle[0]))
         assert bare.recorded_attitude_error is None
+
+
+def skew(w):
+    return np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])
 
 
 def desired_residual(desired):

@@ -2,13 +2,20 @@ from __future__ import annotations
 
 import math
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from des_cli.kinematics.chain import chain_of, joint_axes, seat_position, seat_rotation
 from des_cli.model.machine import Seat
-from des_cli.model.machines import DES, JOHNSVILLE, MACHINES, gimballed_centrifuge_rows
+from des_cli.model.machines import (
+    DES,
+    JOHNSVILLE,
+    MACHINES,
+    gimballed_centrifuge_rows,
+    read_chain,
+)
 from des_cli.units import FOOT_M, STANDARD_GRAVITY_M_S2
 
 
@@ -72,3 +79,21 @@ def test_johnsville_arm_limits_are_its_published_performance():
 def test_missing_length_is_an_error():
     with pytest.raises(KeyError, match="Lt"):
         gimballed_centrifuge_rows({"L2": 1.0, "Lx": 0.0, "Ly": 0.0, "Lz": 0.0})
+
+
+@pytest.mark.parametrize("axis", ["radial", "tangential"])
+@pytest.mark.parametrize("values", [(5.5, 0.0, 0.1, 0.1, -2.0), (0.0, 0.0, 0.0, 0.0, 0.0)])
+def test_a_chain_tells_what_it_was_made_of(axis, values):
+    lengths = dict(zip(("L2", "Lx", "Ly", "Lz", "Lt"), values, strict=True))
+    rows = gimballed_centrifuge_rows(lengths, fork_axis=axis)
+    assert read_chain(rows) == (lengths, axis)
+
+
+def test_another_chain_is_not_one_of_named_lengths():
+    rows = list(DES.rows)
+    assert read_chain(rows[:-1]) is None
+    assert read_chain([*rows, rows[-1]]) is None
+    for index in range(len(rows)):
+        changed = [*rows]
+        changed[index] = replace(rows[index], alpha=rows[index].alpha + 0.1)
+        assert read_chain(changed) is None

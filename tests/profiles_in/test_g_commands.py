@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from des_cli.errors import ProfileError
+from des_cli.kinematics.smoothing import smooth_command
 from des_cli.model.profile import GCommand, Profile
 from des_cli.profiles_in.load import load_profile
 
@@ -150,3 +151,19 @@ def test_what_is_wrong_with_columns(header: str, words: str) -> None:
     row = ",".join(["1"] * len(header.split(",")))
     problems = problems_of(f"{header}\n{row}\n")
     assert any(words in problem for problem in problems), problems
+
+
+def test_a_recorded_g_is_trimmed_resampled_and_smoothed() -> None:
+    t = np.arange(0.0, 10.001, 0.05)
+    gz = 2.0 + 0.3 * np.sin(0.5 * t)
+    rows = "".join(f"{a:.2f},{b:.6f}\n" for a, b in zip(t, gz, strict=True))
+    table = "t_s,gz_g\n" + rows
+    profile = load(table, "trim={from_s: 2, to_s: 8}", "resample={step_s: 0.02}")
+    assert (profile.t[0], profile.t[-1]) == (2.0, 8.0)
+    expected = 2.0 + 0.3 * np.sin(0.5 * profile.t[:-1])
+    np.testing.assert_allclose(command_of(profile).start[:, 2], expected, atol=1e-3)
+    smooth = smooth_command(profile.t, profile.command, 2.0)
+    assert isinstance(smooth, GCommand)
+    np.testing.assert_allclose(smooth.start[:, 2], expected, atol=2e-3)
+    with pytest.raises(ProfileError, match="an asked G"):
+        load(table, "axes={p: x, q: -y, r: -z}")

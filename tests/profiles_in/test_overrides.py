@@ -62,7 +62,7 @@ def test_a_setting_changes_the_built_in_machine_that_the_profile_names() -> None
     assert (named["base"], named["occupant"]) == ("johnsville", {"gy_g": [-1, 1]})
     machine = load_profile("rolling_spin", settings=[setting]).machine
     assert [limit.jerk for limit in machine.limits] == [1.26, 3.0, 10.0]
-    with pytest.raises(ProfileError, match=r"machine is a single value \('own.yaml'\)"):
+    with pytest.raises(ProfileError, match=r"a file: change it in own.yaml"):
         load_profile("rolling_spin", settings=["machine=own.yaml", setting])
 
 

@@ -14,7 +14,7 @@ def test_every_key_of_the_contract_is_in_the_schema() -> None:
     schema = profile_json_schema()
     assert set(schema["properties"]) == {
         "format", "name", "machine", "seat", "initial", "time", "joints", "body_rates", "g",
-        "samples", "reduction",
+        "samples", "trim", "axes", "resample", "smooth", "reduction",
     }  # fmt: skip
     assert schema["required"] == ["format"]
     assert schema["additionalProperties"] is False

@@ -41,7 +41,7 @@ def checks_of_factors(
     )
     profile = profile_of(problem.desired, reduction, problem.machine or DES)
     desired = problem.desired
-    return verify(profile, desired, desired, profile.seat, solution, problem)
+    return verify(Claim(profile, desired, desired, profile.seat, solution, problem))
 
 
 def failed_of_factors(problem: Problem, solution: Solution, reduction: Reduction) -> list[str]:

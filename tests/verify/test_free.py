@@ -17,6 +17,7 @@ from des_cli.model.profile import Reduction
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free.method import find_free_motion
 from des_cli.reduction.free.problem import FreeTask
+from des_cli.verify.claim import Claim
 from des_cli.verify.verify import verify
 from tests.reduction.conftest import make_cobra
 from tests.support.claims import profile_of
@@ -48,7 +49,7 @@ class Case:
             machine=machine or self.profile.machine,
             reduction=replace(self.profile.reduction, **options),
         )
-        return verify(
+        claim = Claim(
             profile,
             asked or self.asked,
             self.desired,
@@ -56,6 +57,7 @@ class Case:
             solution or self.solution,
             commands=commands,
         )
+        return verify(claim)
 
     def failed(self, solution=None, **changes):
         return {check.key for check in self.checks(solution, **changes) if not check.ok}
@@ -235,7 +237,7 @@ def test_an_angle_that_is_exceeded_only_between_two_samples(case):
         solution = replace(
             case.solution, modified=motion, control=np.zeros((11, 0)), adjoint=np.zeros((11, 0))
         )
-        checks = verify(profile, motion, motion, profile.seat, solution)
+        checks = verify(Claim(profile, motion, motion, profile.seat, solution))
         assert ("limits.fork.angle" in {c.key for c in checks if not c.ok}) is broken
 
 

@@ -12,7 +12,7 @@ from des_cli.kinematics.coriolis import coriolis
 from des_cli.kinematics.response import respond_on
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
-from des_cli.model.metric import METRICS, MetricKey
+from des_cli.model.metric import METRICS, Budget, MetricKey
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.model.profile import Axes
 from des_cli.model.solution import Iteration, Solution, Status
@@ -41,11 +41,14 @@ class FreeResult:
     solution : Solution
     seat : Seat
         As fixed in the modified motion.
+    budgets : tuple of Budget
+        As they were kept.
     """
 
     desired: Motion
     solution: Solution
     seat: Seat
+    budgets: tuple[Budget, ...]
 
 
 @dataclass
@@ -80,6 +83,7 @@ class Answers:
 
     def __init__(self, task: FreeTask, log: StepLog) -> None:
         self.task, self.log = task, log
+        self.budgets = task.reduction.budget
         self._rows = len(task.reference.t)
 
     def found(self, outcome: Outcome, modified: Motion, desired: Motion, seat: Seat) -> FreeResult:
@@ -92,11 +96,11 @@ class Answers:
         message = "the desired motion makes no cross-coupling: it is passed through"
         return self._result("converged", message, desired, desired, self.task.seat, 0.0)
 
-    def refused(self, desired: Motion, why: str) -> FreeResult:
-        """Return that there is no motion to be found."""
+    def refused(self, desired: Motion, why: str, status: Status = "infeasible") -> FreeResult:
+        """Return that there is no motion to be found, or to be looked for."""
         nan = float("nan")
         solution = Solution(
-            status="infeasible",
+            status=status,
             message=why,
             control=self._factors(desired, desired),
             modified=desired,
@@ -107,7 +111,7 @@ class Answers:
             iterations=len(self.log.lines),
             log=tuple(self.log.lines),
         )
-        return FreeResult(desired, solution, self.task.seat)
+        return FreeResult(desired, solution, self.task.seat, self.budgets)
 
     def _result(
         self,
@@ -130,7 +134,7 @@ class Answers:
             iterations=len(self.log.lines),
             log=tuple(self.log.lines),
         )
-        return FreeResult(desired, solution, seat)
+        return FreeResult(desired, solution, seat, self.budgets)
 
     def _verdict(self, outcome: Outcome) -> tuple[Status, str]:
         steps = f"{len(self.log.lines)} steps in all"

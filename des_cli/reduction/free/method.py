@@ -26,6 +26,8 @@ from des_cli.model.metric import Budget, MetricKey
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Reduction
 from des_cli.model.solution import Iteration
+from des_cli.model.stage import OnStage, untold
+from des_cli.reduction.change import Change
 from des_cli.reduction.executable import (
     ExecutableSpline,
     fit_for_table,
@@ -104,7 +106,9 @@ budget binds."""
 
 
 def find_free_motion(
-    task: FreeTask, report: Callable[[Iteration], None] | None = None
+    task: FreeTask,
+    report: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
 ) -> FreeResult:
     """Find the motion with the least cost inside limits and budgets.
 
@@ -113,6 +117,8 @@ def find_free_motion(
     task : FreeTask
     report : callable, optional
         Called with each line of the solver's log.
+    on_stage : callable, optional
+        Called with what is done next.
 
     Returns
     -------
@@ -120,15 +126,15 @@ def find_free_motion(
         Its solution is ``infeasible`` where no executable motion keeps the budgets, and
         passed through where the desired motion makes no cross-coupling.
     """
-    search = _Search(task, StepLog(task.reduction.max_iterations, report))
+    search = _Search(task, StepLog(task.reduction.max_iterations, report), on_stage)
     return search.run()
 
 
 class _Search:
     """The search for one task: its grids, its starts, and the budgets of its table."""
 
-    def __init__(self, task: FreeTask, log: StepLog) -> None:
-        self.task, self.log = task, log
+    def __init__(self, task: FreeTask, log: StepLog, on_stage: OnStage) -> None:
+        self.task, self.log, self.on_stage = task, log, on_stage
         self.answers = Answers(task, log)
         self.t = task.reference.t
         self.warm = False
@@ -146,6 +152,12 @@ class _Search:
         desired = self._desired(finest)
         if finest.trouble:
             return self.answers.refused(desired, finest.trouble)
+        change = self._change(desired)
+        if refusal := change.refusal(self.task.reduction):
+            return self.answers.refused(desired, refusal, "changed")
+        between = {} if change.nothing else self._between(finest)
+        self.task = self._with_budgets(change.widened(self.task.reduction, between))
+        self.answers = Answers(self.task, self.log)
         fits = [*(fit for fit in coarse if not fit.trouble), finest]
         energy = cross_coupling(self.task, finest.grid)
         if energy <= NOTHING * finest.grid.duration:
@@ -154,6 +166,7 @@ class _Search:
         outcome: Outcome | None = None
         x = start = np.zeros(0)
         for level, fit in enumerate(fits):
+            self.on_stage(f"grid {level + 1} of {len(fits)}")
             last = level == len(fits) - 1
             level_budgets = budgets if last else _drawn_in(budgets)
             program = self._program(fit, level_budgets)
@@ -179,11 +192,31 @@ class _Search:
         return self._settled(finest, desired, budgets, outcome, start)
 
     def _desired(self, fit: ExecutableSpline) -> Motion:
-        """Return what the profile asks for, or its executable replacement if it needs one."""
+        """Return what the motion begins from, or its executable replacement if it needs one."""
         enforced = self.task.reduction.limits == "enforce"
-        if not enforced or not find_violations(self.task.machine, self.task.reference, "desired"):
-            return self.task.reference
+        if not enforced or not find_violations(self.task.machine, self.task.target, "desired"):
+            return self.task.target
         return sample_spline(fit, self.t)
+
+    def _change(self, desired: Motion) -> Change:
+        """Measure what was changed of the record already."""
+        task = self.task
+        return Change(
+            Deviation.between(
+                task.reference,
+                desired,
+                (task.chain, task.chain),
+                task.machine.gravity,
+                shortfall=task.shortfall,
+            )
+        )
+
+    def _between(self, fit: ExecutableSpline) -> dict[MetricKey, float]:
+        """Return what the fit spends of integral metrics, between the samples too."""
+        budgets = [b for b in self.task.reduction.budget if b.metric not in AT_POINTS]
+        program = self._program(fit, budgets)
+        values = program.values(np.zeros(program.size)).budgets
+        return {b.metric: float(np.sqrt(v)) * b.most for b, v in zip(budgets, values, strict=True)}
 
     def _grids(self) -> list[SplineGrid]:
         """Return the grids to solve on, the last one that of the result."""
@@ -201,7 +234,7 @@ class _Search:
 
     def _fit(self, grid: SplineGrid) -> ExecutableSpline:
         task = self.task
-        fit, limits = fit_for_table(grid, self.t, task.reference, task.limits, task.base_ends)
+        fit, limits = fit_for_table(grid, self.t, task.target, task.limits, task.base_ends)
         self.task = replace(task, limits=limits)
         return fit
 
@@ -295,6 +328,7 @@ class _Search:
         allowed = {b.metric: b.most for b in self.task.reduction.budget}
         best: FreeResult | None = None
         for attempt in range(SETTLINGS):
+            self.on_stage("settling the table" + f", attempt {attempt + 1}" * (attempt > 0))
             program = self._program(fit, budgets)
             modified, seat = self._table(program, fit, outcome.x)
             deviation = Deviation.between(
@@ -302,6 +336,7 @@ class _Search:
                 modified,
                 (self.task.chain, chain_of(self.task.machine, seat)),
                 self.task.machine.gravity,
+                shortfall=self.task.shortfall,
             )
             spent = {m: deviation.value(m) / most for m, most in allowed.items()}
             worst = max(spent.values(), default=TOUCHING)

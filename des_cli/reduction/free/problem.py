@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import get_args
 
 import numpy as np
 
+from des_cli.kinematics.attitude import rotation
 from des_cli.kinematics.chain import Chain, chain_of
 from des_cli.kinematics.coriolis import coriolis
-from des_cli.kinematics.response import respond_on
+from des_cli.kinematics.response import respond_on, with_shortfall
+from des_cli.kinematics.seat import PILOT_SIGNS
 from des_cli.kinematics.seat_turn import SeatTurn, seat_turns
 from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import SeatForms, SeatMotion, seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine, OccupantBounds, Seat
 from des_cli.model.metric import Budget, MetricKey
-from des_cli.model.motion import Motion
+from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
 from des_cli.reduction.free.ground_cross import GroundCross
@@ -29,10 +32,10 @@ from des_cli.reduction.free.local_bounds import (
     OnsetBound,
 )
 from des_cli.reduction.free.program import SEAT_VARIABLES, FreeSeat, MotionProblem
-from des_cli.reduction.free.terms import JointBudget, Term, value_of
+from des_cli.reduction.free.terms import JointBudget, Quantity, Term, value_of
 from des_cli.reduction.free.windows import JOINTS as COMPONENTS
 from des_cli.reduction.free.windows import Windows
-from des_cli.reduction.reference import sample_motion
+from des_cli.reduction.reference import sample_motion, sample_sides
 from des_cli.solver.spline import Ends, SplineGrid
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
@@ -53,9 +56,6 @@ whoever differentiates a table of positions twice."""
 
 UNIT_ACCELERATION = 1.0
 """Acceleration [rad/s^2] that the regularisation takes for a joint without a limit."""
-
-PILOT_SIGNS = np.array([1.0, 1.0, -1.0])
-"""From the specific force along x, y, z of the seat to Gx, Gy, Gz."""
 
 AT_POINTS: frozenset[MetricKey] = frozenset(
     {"attitude_error_max_deg", "seat_angular_acceleration_peak_ratio"}
@@ -81,25 +81,45 @@ class FreeTask:
     reduction : Reduction
     reference : Motion
         What fidelity is measured against.
+    target : Motion
+        What the motion begins from: the reference, or what conditioning made of it.
     limits : tuple of JointLimits
         That hold for the motion.
     room : float
         Share of each bound on what the occupant gets that is left to the table.
+    shortfall : Shortfall, optional
+        What is asked for beyond the reference.
     """
 
     machine: Machine
     seat: Seat
     reduction: Reduction
     reference: Motion
+    target: Motion
     limits: tuple[JointLimits, ...]
     room: float = 0.0
+    shortfall: Shortfall | None = None
 
     @classmethod
-    def of(cls, profile: Profile, reference: Motion) -> FreeTask:
-        """Take what a profile asks for."""
+    def of(
+        cls,
+        profile: Profile,
+        reference: Motion,
+        target: Motion | None = None,
+        shortfall: Shortfall | None = None,
+    ) -> FreeTask:
+        """Take what a profile asks for, and what the motion begins from."""
         enforced = profile.reduction.limits == "enforce"
         limits = profile.machine.limits if enforced else unlimited()
-        return cls(profile.machine, profile.seat, profile.reduction, reference, limits)
+        return cls(
+            machine=profile.machine,
+            seat=profile.seat,
+            reduction=profile.reduction,
+            reference=reference,
+            target=reference if target is None else target,
+            limits=limits,
+            shortfall=shortfall,
+        )
 
     @property
     def chain(self) -> Chain:
@@ -150,9 +170,11 @@ def pose_motion(
     reduction = task.reduction
     forms = seat_forms(task.chain, task.machine.gravity)
     windows = Windows(grid, SEAT_VARIABLES)
-    angle, rate, acceleration = sample_motion(task.reference, windows.times())
+    times = windows.times()
+    angle, rate, acceleration = sample_motion(task.reference, times)
     seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
-    measures = _Measures(grid, base, angle, seat, cross_coupling(task, grid))
+    asked = _asked(seat, task, times)
+    measures = _Measures(grid, base, angle, asked, cross_coupling(task, grid))
     acceleration_limit = np.array([limit.acceleration for limit in task.machine.limits])
     unit = np.where(np.isfinite(acceleration_limit), acceleration_limit, UNIT_ACCELERATION)
     return MotionProblem(
@@ -165,7 +187,11 @@ def pose_motion(
         ends=task.ends,
         smoothing=REGULARISATION / (grid.duration * unit**2),
         local=[
-            *(_point_bound(task, angle, b) for b in reduction.budget if b.metric in AT_POINTS),
+            *(
+                _point_bound(task, times, angle, b)
+                for b in reduction.budget
+                if b.metric in AT_POINTS
+            ),
             *_occupant_bounds(task.occupant, grid, task.room),
         ],
         seat=_free_seat(task),
@@ -187,13 +213,33 @@ def in_ground_axes(reduction: Reduction) -> bool:
     return reduction.axes == "report" and not isotropic
 
 
+def _asked(seat: SeatMotion, task: FreeTask, times: Floats) -> dict[Quantity, Floats]:
+    """Return what is asked of the seat at points, (3, p) each, by the quantities of terms."""
+    asked = {quantity: value_of(seat, quantity) for quantity in get_args(Quantity)}
+    missing = task.shortfall
+    if missing is not None:
+        per_g = PILOT_SIGNS * STANDARD_GRAVITY_M_S2
+        for quantity, sides in (
+            ("rate", missing.seat_rate),
+            ("acceleration", missing.seat_angular_acceleration),
+            ("force", missing.seat_g * per_g),
+        ):
+            asked[quantity] = asked[quantity] + sample_sides(task.reference.t, sides, times).T
+    return asked
+
+
 class _Measures:
     """Costs and budgets on a grid, relative to the reference's own size."""
 
     def __init__(
-        self, grid: SplineGrid, base: Floats, angle: Floats, seat: SeatMotion, size: float
+        self,
+        grid: SplineGrid,
+        base: Floats,
+        angle: Floats,
+        asked: Mapping[Quantity, Floats],
+        size: float,
     ) -> None:
-        self.grid, self.base, self.angle, self.seat = grid, base, angle, seat
+        self.grid, self.base, self.angle, self.asked = grid, base, angle, asked
         self.size = max(size, 1e-300)
         self.weight = 0.5 * grid.step
 
@@ -203,10 +249,10 @@ class _Measures:
         if reduction.objective != "felt" and not in_ground_axes(reduction):
             terms.append(Term("cross", self._cross_root(reduction)))
         if reduction.objective != "coriolis":
-            cross = value_of(self.seat, "cross")
+            cross = self.asked["cross"]
             share = BLEND if reduction.objective == "blend" else 1.0
             isotropic = np.sqrt(share * np.trace(reduction.r1) / 3.0 * self.weight / self.size)
-            target = value_of(self.seat, "acceleration") - cross
+            target = self.asked["acceleration"] - cross
             terms.append(Term("acceleration", isotropic * np.eye(3), target))
         return terms
 
@@ -242,14 +288,12 @@ class _Measures:
                 return Term("acceleration", self._per_size("acceleration") / most * np.eye(3))
         raise ValueError(f"a free motion has no budget on {budget.metric}")
 
-    def _per_size(self, quantity: str) -> float:
+    def _per_size(self, quantity: Quantity) -> float:
         """Return one over the norm of a quantity of the reference."""
-        value = value_of(self.seat, quantity)  # type: ignore[arg-type]
-        return 1.0 / max(float(np.linalg.norm(value)), 1e-150)
+        return 1.0 / max(float(np.linalg.norm(self.asked[quantity])), 1e-150)
 
-    def _term(self, quantity: str, scale: float) -> Term:
-        value = value_of(self.seat, quantity)  # type: ignore[arg-type]
-        return Term(quantity, scale * np.eye(3), value)  # type: ignore[arg-type]
+    def _term(self, quantity: Quantity, scale: float) -> Term:
+        return Term(quantity, scale * np.eye(3), self.asked[quantity])
 
     def _joints(self, most: float) -> JointBudget:
         windows = Windows(self.grid, tuple((0, joint) for joint in range(COMPONENTS)))
@@ -266,19 +310,27 @@ def _root(weight: Floats) -> Floats:
     return np.asarray((vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
 
 
-def _point_bound(task: FreeTask, angle: Floats, budget: Budget) -> LocalBound:
+def _point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) -> LocalBound:
     """Return a budget that bounds every point."""
     if budget.metric == "attitude_error_max_deg":
-        return _attitude_bound(task.chain, angle, budget.most)
-    response = respond_on(task.chain, task.machine.gravity, task.reference)
+        return _attitude_bound(task, times, angle, budget.most)
+    response = with_shortfall(
+        respond_on(task.chain, task.machine.gravity, task.reference), task.shortfall
+    )
     peak = np.max(np.linalg.norm(response.seat_angular_acceleration, axis=-1))
     return NormBound("acceleration", budget.most * max(float(peak), 1e-150))
 
 
-def _attitude_bound(chain: Chain, angle: Floats, most_deg: float) -> AttitudeBound:
-    coefficient = chain.transform.coefficient[..., :3, :3]
-    rotation = TrigPolynomial(coefficient.reshape(3, 3, 3, 9))
-    return AttitudeBound(rotation, rotation(angle).T, float(np.radians(most_deg)))
+def _attitude_bound(task: FreeTask, times: Floats, angle: Floats, most_deg: float) -> AttitudeBound:
+    coefficient = task.chain.transform.coefficient[..., :3, :3]
+    attitude = TrigPolynomial(coefficient.reshape(3, 3, 3, 9))
+    asked = attitude(angle)
+    if task.shortfall is not None:
+        missing = task.shortfall.attitude
+        sides = np.stack([missing[:-1], missing[1:]], axis=1)
+        turn = rotation(sample_sides(task.reference.t, sides, times))
+        asked = (asked.reshape(-1, 3, 3) @ turn).reshape(-1, 9)
+    return AttitudeBound(attitude, asked.T, float(np.radians(most_deg)))
 
 
 def _occupant_bounds(occupant: OccupantBounds, grid: SplineGrid, room: float) -> list[LocalBound]:

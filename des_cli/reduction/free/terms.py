@@ -100,23 +100,20 @@ def curvature_of(seat: SeatMotion, multipliers: dict[Quantity, Floats]) -> Float
 
 def squares(slopes: list[Floats]) -> Floats:
     """Return ``sum slope' slope`` of scaled slopes, its upper triangle, (36, m)."""
-    m = slopes[0].shape[-1]
-    total = np.zeros((VARIABLES * (VARIABLES + 1) // 2, m))
-    few = [slope for slope in slopes if len(slope) == _RATE_VARIABLES]
-    many = [slope for slope in slopes if len(slope) == VARIABLES]
-    if many:
-        stacked = np.concatenate(many, axis=1)
-        at = 0
-        for k in range(VARIABLES):
-            total[at : at + VARIABLES - k] += np.einsum("rm,lrm->lm", stacked[k], stacked[k:])
-            at += VARIABLES - k
-    if few:
-        stacked = np.concatenate(few, axis=1)
-        at = 0
-        for k in range(_RATE_VARIABLES):
-            total[at : at + _RATE_VARIABLES - k] += np.einsum("rm,lrm->lm", stacked[k], stacked[k:])
-            at += VARIABLES - k
+    total = np.zeros((VARIABLES * (VARIABLES + 1) // 2, slopes[0].shape[-1]))
+    for count in (_RATE_VARIABLES, VARIABLES):
+        alike = [slope for slope in slopes if len(slope) == count]
+        if alike:
+            _add_squares(np.concatenate(alike, axis=1), total)
     return total
+
+
+def _add_squares(slope: Floats, total: Floats) -> None:
+    """Add ``slope' slope`` of the first variables, (5 or 8, r, m), to an upper triangle."""
+    first = 0
+    for k in range(len(slope)):
+        total[first : first + len(slope) - k] += np.einsum("rm,lrm->lm", slope[k], slope[k:])
+        first += VARIABLES - k
 
 
 @dataclass(frozen=True, eq=False)

@@ -182,7 +182,7 @@ def test_no_cross_coupling_is_passed_through():
 def test_budgets_that_the_limits_exceed_are_named():
     # a cab's rate that steps by 1 rad/s
     t = np.linspace(0.0, 4.0, 201)
-    side = np.where(t[:-1] < 2.0 - 1e-9, -0.5, 0.5)
+    side = np.where(t[:-1] < 2.0 - 1e-9, -0.45, 0.45)
     rate = np.stack([np.full(200, 0.6), np.full(200, 0.2), side], axis=1)
     angle = np.vstack([np.zeros(3), np.cumsum(0.02 * rate, axis=0)])
     desired = Motion(t, angle, rate, rate)

@@ -11,6 +11,7 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond_on
 from des_cli.model.machine import OccupantBounds, Seat
 from des_cli.model.machines import DES
+from des_cli.model.motion import Shortfall
 from des_cli.model.profile import Reduction
 from des_cli.reduction.executable import ExecutableSpline, sample_spline
 from des_cli.reduction.fidelity import Deviation
@@ -58,6 +59,34 @@ def test_budgets_are_their_metrics_on_the_table(metric):
         assert np.sqrt(values.local.max()) <= share * (1.0 + 1e-3)
     else:
         assert np.sqrt(values.budgets[0]) == pytest.approx(share, rel=5e-3)
+
+
+def wide_shortfall():
+    """Something asked for beyond the desired motion, in everything that is felt."""
+    t = DESIRED.t
+    wave = np.stack([np.sin(t), 0.5 * np.cos(2.0 * t), 0.3 * np.sin(1.5 * t)], axis=1)
+    sides = np.stack([wave[:-1], wave[1:]], axis=1)
+    return Shortfall(0.2 * sides, 0.3 * sides, 0.1 * sides, 0.05 * wave)
+
+
+@pytest.mark.parametrize("metric", [metric for metric in MOST if "joint" not in metric])
+def test_budgets_are_against_all_that_is_asked_for(metric):
+    missing = wide_shortfall()
+    task = replace(task_of(DESIRED, {metric: MOST[metric]}), shortfall=missing)
+    program = program_of(task, INTERVALS)
+    x = sway(program)
+    chains = (task.chain, task.chain)
+    shares = [
+        Deviation.between(
+            DESIRED, moved(task, program, x), chains, DES.gravity, shortfall=each
+        ).value(metric)
+        / MOST[metric]
+        for each in (missing, None)
+    ]
+    assert shares[0] != pytest.approx(shares[1], rel=3e-2)
+    values = program.values(x)
+    found = values.local.max() if metric in AT_POINTS else values.budgets[0]
+    assert np.sqrt(found) == pytest.approx(shares[0], rel=3e-2 if metric in AT_POINTS else 1e-2)
 
 
 @pytest.mark.parametrize("axes", ["seat", "report"])

@@ -1,0 +1,148 @@
+"""A line on a terminal that says what is being done, rewritten while it lasts.
+
+It appears once the work has taken a while, and is gone afterwards. A thread keeps its
+seconds going through what tells nothing; whoever works only names the stages.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from des_cli.model.solution import Iteration
+
+DELAY_S = 1.0
+"""Work that is done before leaves no line."""
+
+INTERVAL_S = 0.1
+"""Time between two drawings at the least, and of the thread's."""
+
+_ERASE = "\r\x1b[K"
+_NARROW = 80
+"""Columns of a terminal that does not tell."""
+
+
+class StatusLine:
+    """What is being done, for as long as the context lasts.
+
+    Parameters
+    ----------
+    stream : text stream, optional
+        A terminal; None shows nothing.
+    total : int
+        How many there are to do; of several the line counts those that are done.
+    noun : str
+        What they are, in the plural.
+    clock : callable
+        Seconds that only grow.
+    """
+
+    def __init__(
+        self,
+        stream: TextIO | None,
+        *,
+        total: int = 1,
+        noun: str = "profiles",
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._stream, self._total, self._noun, self._clock = stream, total, noun, clock
+        self._stage, self._step, self._done = "", -1, 0
+        self._began, self._drawn = clock(), -float("inf")
+        self._shown = False
+        # whoever draws, erases or prints beside it holds it
+        self._lock = threading.RLock()
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._keep_going, daemon=True)
+
+    def __enter__(self) -> StatusLine:
+        """Begin to count the seconds."""
+        self._began = self._clock()
+        if self._stream is not None:
+            self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Take the line away, however the work ended."""
+        self._over.set()
+        if self._thread.is_alive():
+            self._thread.join()
+        with self.hidden():
+            self._stream = None
+
+    def stage(self, text: str) -> None:
+        """Say what is done from now on."""
+        with self._lock:
+            self._stage, self._step = text, -1
+            self._draw()
+
+    def iteration(self, iteration: Iteration) -> None:
+        """Say how many steps a solver has taken."""
+        with self._lock:
+            self._step = iteration.number
+            self._draw()
+
+    def advance(self) -> None:
+        """Count one more that is done."""
+        with self._lock:
+            self._done += 1
+            self._stage, self._step = "", -1
+            self._draw()
+
+    @contextmanager
+    def hidden(self) -> Iterator[None]:
+        """Keep the line away while something else is printed."""
+        with self._lock:
+            if self._shown:
+                self._write(_ERASE)
+                self._shown = False
+            yield
+
+    def _keep_going(self) -> None:
+        while not self._over.wait(max(INTERVAL_S, 0.01)):
+            with self._lock:
+                self._draw()
+
+    def _draw(self) -> None:
+        """Draw the line if the work has lasted, and not too soon after the last time."""
+        now = self._clock()
+        if self._stream is None or now - self._began < DELAY_S or now - self._drawn < INTERVAL_S:
+            return
+        columns = _columns(self._stream)
+        self._write(_ERASE + self._text(now)[: columns - 1])
+        self._shown, self._drawn = True, now
+
+    def _text(self, now: float) -> str:
+        parts = []
+        if self._total > 1:
+            parts.append(f"{self._done} of {self._total} {self._noun} done")
+        if self._stage:
+            parts.append(self._stage)
+        if self._step >= 0:
+            parts.append(f"step {self._step}")
+        return f"  {', '.join([*parts, f'{now - self._began:.0f} s'])}"
+
+    def _write(self, text: str) -> None:
+        """Write at once; a terminal that went away is no reason to stop working."""
+        if self._stream is not None:
+            with suppress(OSError, ValueError):
+                self._stream.write(text)
+                self._stream.flush()
+
+
+def _columns(stream: TextIO) -> int:
+    try:
+        return os.get_terminal_size(stream.fileno()).columns or _NARROW
+    except (OSError, ValueError):
+        return _NARROW

@@ -1,0 +1,119 @@
+"""What was changed of the record before anything was reduced, and how much is allowed.
+
+A record may be smoothed, held at a rate limit or damped near the singularity, and replaced
+by the nearest motion inside the machine's limits. Each of these changes what is felt. All
+of it counts: fidelity is measured against the record, and a change beyond what is allowed
+is refused, for the rest would be a reduction of a motion that nobody asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from des_cli.kinematics.chain import chain_of
+from des_cli.model.metric import METRICS, Budget, MetricKey
+from des_cli.model.motion import DesiredMotion, Motion
+from des_cli.model.profile import Profile, Reduction
+from des_cli.reduction.fidelity import Deviation
+
+LARGEST_CHANGE = 0.1
+"""Share of the record's seat rate, or of its G-vector, that may be changed before the
+reduction without a word of the user: what a silent profile may lose of the seat rate in all."""
+
+SHARES: tuple[MetricKey, ...] = ("seat_rate_deviation_relative", "seat_g_deviation_relative")
+"""What of a change is told and bounded: what the pilot feels of it, relative to the record."""
+
+RATIOS: frozenset[MetricKey] = frozenset(
+    {"seat_angular_acceleration_rms_ratio", "seat_angular_acceleration_peak_ratio"}
+)
+"""Metrics that compare sizes: their value is one where nothing is changed."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """How far a motion is from the record before its cross-coupling is reduced.
+
+    Parameters
+    ----------
+    deviation : Deviation
+        Between the record and the motion.
+    """
+
+    deviation: Deviation
+
+    @classmethod
+    def between(cls, profile: Profile, asked: DesiredMotion, motion: Motion) -> Change:
+        """Measure a motion against what a profile asks for."""
+        chains = (chain_of(profile.machine, profile.seat),) * 2
+        gravity = profile.machine.gravity
+        return cls(
+            Deviation.between(asked.motion, motion, chains, gravity, shortfall=asked.shortfall)
+        )
+
+    @property
+    def nothing(self) -> bool:
+        """Whether the motion is the record itself."""
+        same = self.deviation.modified is self.deviation.reference
+        return same and self.deviation.shortfall is None
+
+    def refusal(self, reduction: Reduction) -> str:
+        """Say that more was changed than is allowed; empty where it was not."""
+        if self.nothing:
+            return ""
+        shares = {metric: self.deviation.value(metric) for metric in SHARES}
+        allowed = {metric: _allowed(reduction, metric) for metric in SHARES}
+        if all(shares[metric] <= allowed[metric] for metric in SHARES):
+            return ""
+        told = " and ".join(
+            f"{100.0 * shares[metric]:.1f} % of its {METRICS[metric].label}" for metric in SHARES
+        )
+        enough = np.ceil(100.0 * max(shares.values())) / 100.0
+        return (
+            f"the record is changed by {told} before any reduction, and "
+            f"{100.0 * min(allowed.values()):g} % is allowed; condition the record, or take "
+            f"--allow-change {enough:g}"
+        )
+
+    def widened(
+        self, reduction: Reduction, between: Mapping[MetricKey, float] | None = None
+    ) -> tuple[Budget, ...]:
+        """Return the budgets that hold against the record.
+
+        Where the user allows a change, a budget is what the reduction may add to it. Two
+        deviations that know nothing of each other add up in their squares, so that the
+        whole is at most ``hypot(change, budget)``; a ratio of sizes is one of the changed
+        motion's.
+
+        Parameters
+        ----------
+        reduction : Reduction
+        between : mapping, optional
+            The change by each metric as a method sees it that looks between the samples
+            too, where a rough record is not what its samples are.
+        """
+        if self.nothing or reduction.allow_change is None:
+            return reduction.budget
+        seen = between or {}
+        return tuple(
+            replace(b, most=self._most(b, seen.get(b.metric, 0.0))) for b in reduction.budget
+        )
+
+    def _most(self, budget: Budget, between: float) -> float:
+        change = max(self.deviation.value(budget.metric), between)
+        if budget.metric in RATIOS:
+            return budget.most * max(1.0, change)
+        if budget.metric == "mean_square_one_minus_p":
+            return budget.most
+        if budget.metric == "joint_deviation_relative_squared":
+            return budget.most + change
+        return float(np.hypot(change, budget.most))
+
+
+def _allowed(reduction: Reduction, metric: MetricKey) -> float:
+    """Return what may be changed; who has a budget of more allows more."""
+    if reduction.allow_change is not None:
+        return reduction.allow_change
+    return max([LARGEST_CHANGE, *(b.most for b in reduction.budget if b.metric == metric)])

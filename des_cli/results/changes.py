@@ -1,0 +1,82 @@
+"""What was changed of the record before the reduction: ``changes`` and ``executable``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from des_cli.kinematics.chain import chain_of
+from des_cli.model.machine import JOINTS
+from des_cli.model.motion import DesiredMotion, Motion, Shortfall
+from des_cli.model.profile import Profile
+from des_cli.reduction.baseline import joint_deviation
+from des_cli.reduction.fidelity import Deviation
+from des_cli.reduction.limits import find_violations
+
+
+def condition_metrics(profile: Profile, asked: DesiredMotion, target: Motion) -> dict[str, Any]:
+    """Return what the steps from the record to what the reduction begins from cost.
+
+    Parameters
+    ----------
+    profile : Profile
+    asked : DesiredMotion
+        The record.
+    target : Motion
+        What conditioning made of it.
+
+    Returns
+    -------
+    dict
+        ``damping`` (rates held at a limit, or damped near the singularity) and
+        ``smoothing``; None for a step that was not taken.
+    """
+    record, missing = asked.motion, asked.shortfall
+    return {
+        "damping": None if missing is None else _cost(profile, record, record, missing),
+        "smoothing": None if target is record else _cost(profile, record, target),
+    }
+
+
+def executable_metrics(profile: Profile, target: Motion, desired: Motion) -> dict[str, Any]:
+    """Return what keeping the limits alone cost.
+
+    Parameters
+    ----------
+    profile : Profile
+    target : Motion
+        What was to be made.
+    desired : Motion
+        The same, or the nearest motion inside the limits.
+    """
+    broken = find_violations(profile.machine, target, "desired")
+    return {
+        "replaced": desired is not target,
+        "breaks_limits": bool(broken),
+        **_cost(profile, target, desired),
+    }
+
+
+def _cost(
+    profile: Profile, before: Motion, after: Motion, missing: Shortfall | None = None
+) -> dict[str, Any]:
+    """Return what is felt, and done by the joints, of a change from one motion to another."""
+    chains = (chain_of(profile.machine, profile.seat),) * 2
+    deviation = Deviation.between(before, after, chains, profile.machine.gravity, shortfall=missing)
+    moved = np.max(np.abs(after.angle - before.angle), axis=0)
+    return {
+        "joint_change_relative": joint_deviation(before, after),
+        "joint_change_max_rad": {
+            joint: float(value) for joint, value in zip(JOINTS, moved, strict=True)
+        },
+        **{
+            metric: deviation.value(metric)
+            for metric in (
+                "seat_rate_deviation_relative",
+                "seat_g_rms_error_g",
+                "seat_angular_acceleration_rms_error_rad_s2",
+                "attitude_error_max_deg",
+            )
+        },
+    }

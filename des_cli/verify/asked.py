@@ -1,0 +1,59 @@
+"""What a profile asks of the seat, where its joint motion does not make all of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from des_cli.model.arrays import Floats
+from des_cli.model.motion import Shortfall
+from des_cli.model.profile import BodyRates, Profile
+from des_cli.verify.felt import Felt
+
+
+def as_asked(felt: Felt, profile: Profile, missing: Shortfall | None) -> Felt:
+    """Return what is felt of a joint motion with what was asked for beyond it.
+
+    Recorded rates are taken from the profile itself, whatever became of them.
+
+    Parameters
+    ----------
+    felt : Felt
+        Of the joint motion that the profile asks for, at the states of `SeatChain.along`.
+    profile : Profile
+    missing : Shortfall or None
+    """
+    if missing is None:
+        return felt
+    turning = felt.turning + _states(missing.seat_angular_acceleration)
+    command, rate = profile.command, felt.rate + _states(missing.seat_rate)
+    if isinstance(command, BodyRates):
+        rate = np.concatenate([command.start, command.end]).T
+    turn = np.concatenate([missing.attitude[:-1], missing.attitude[1:]])
+    return replace(
+        felt,
+        rate=rate,
+        turning=turning,
+        g=felt.g + _states(missing.seat_g),
+        rotation=np.einsum("ijm,mjk->ikm", felt.rotation, _exponential(turn)),
+    )
+
+
+def _states(sides: Floats) -> Floats:
+    """Return values on sides at the starts of all intervals, then at their ends, (3, m)."""
+    return np.concatenate([sides[:, 0], sides[:, 1]]).T
+
+
+def _exponential(vector: Floats) -> Floats:
+    """Return the rotations of rotation vectors (m, 3), (m, 3, 3), by quaternions."""
+    angle = np.linalg.norm(vector, axis=1)
+    half = 0.5 * angle
+    x, y, z = (0.5 * np.sinc(half / np.pi)[:, None] * vector).T
+    w = np.cos(half)
+    rows = [
+        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
