@@ -19,6 +19,7 @@ from des_cli.model.run import Violation
 from des_cli.model.solution import Solution
 from des_cli.reduction.baseline import Baselines
 from des_cli.reduction.fidelity import Deviation
+from des_cli.results.asked_g import asked_g_metrics
 from des_cli.results.changes import condition_metrics, executable_metrics
 from des_cli.results.felt import felt_metrics, rms, tilt_error
 from des_cli.results.joints import joint_metrics
@@ -51,6 +52,7 @@ def measure(run: Measured) -> dict[str, Any]:
         "profile": _profile(run.profile),
         "solver": _solver(run.profile, run.solution),
         "parameters": _parameters(run),
+        "asked_g": asked_g_metrics(run.asked.g_offset),
         "coriolis": coriolis_metrics(run.asked.motion.step, run.before, run.after)
         | {"objective": {"reduction": run.baselines.reduction}},
         "fidelity": fidelity_metrics(run),

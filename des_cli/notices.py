@@ -11,6 +11,7 @@ from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.metric import METRICS, MetricKey
 from des_cli.model.motion import DesiredMotion
 from des_cli.model.profile import Profile
+from des_cli.results.asked_g import asked_g_sentence
 from des_cli.results.worse import find_worse
 
 BOUGHT = 0.05
@@ -53,9 +54,9 @@ def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]
     -------
     list of str
         On what reading changed, a noisy record, a ride that got worse or feels different,
-        budgets that let the commands chatter, a damped inverse, a replaced desired motion,
-        a cross-coupling that grew or was bought with another or was not there, and a
-        solver that stopped short of its tolerance.
+        budgets that let the commands chatter, how near the machine comes to an asked G, a
+        damped inverse, a replaced desired motion, a cross-coupling that grew or was bought
+        with another or was not there, and a solver that stopped short of its tolerance.
     """
     found = [
         *profile.remarks,
@@ -64,6 +65,7 @@ def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]
         _worse(metrics),
         _felt(metrics),
         _ill_posed(metrics),
+        asked_g_sentence(asked.g_offset),
         _damped(asked),
         _replaced(metrics),
         _nothing(metrics),

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond, respond_as_asked
 from des_cli.kinematics.smoothing import smooth_command
 from des_cli.metrics import Measured, measure
@@ -19,6 +18,7 @@ from des_cli.model.stage import OnStage, untold
 from des_cli.notices import find_notices
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.consistency import require_consistent
+from des_cli.reduction.desired import find_desired
 from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion
@@ -55,7 +55,7 @@ def reduce_profile(
     """
     require_consistent(profile.reduction, profile.name)
     on_stage("desired motion")
-    asked = make_desired(profile)
+    asked = find_desired(profile)
     target = _conditioned(profile, asked)
     found = find_motion(profile, asked, target, on_iteration, on_stage)
     on_stage("baselines")
@@ -121,7 +121,7 @@ def _conditioned(profile: Profile, asked: DesiredMotion) -> Motion:
         return asked.motion
     record = _on_rows(profile, asked)
     smooth = smooth_command(record.t, record.command, cutoff_hz)
-    return make_desired(replace(record, command=smooth), divide=False).motion
+    return find_desired(replace(record, command=smooth), divide=False).motion
 
 
 def _on_rows(profile: Profile, asked: DesiredMotion) -> Profile:

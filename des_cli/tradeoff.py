@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond, respond_as_asked
 from des_cli.metrics import Measured, measure
 from des_cli.model.arrays import Floats
@@ -25,6 +24,7 @@ from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import BASELINE, SOLVED, TradePoint
 from des_cli.pipeline import reduce_profile
 from des_cli.reduction.baseline import compare
+from des_cli.reduction.desired import find_desired
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.limits import find_violations
 from des_cli.reduction.problem import Problem, pose_problem
@@ -94,7 +94,7 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
     weights : sequence of float
         r2 of the study's law. Without one, the profile's.
     """
-    asked = make_desired(profile)
+    asked = find_desired(profile)
     desired = asked.motion
     if profile.reduction.limits == "enforce":
         desired, trouble = nearest_executable(profile.machine, desired)

@@ -14,13 +14,14 @@ from ruamel.yaml import YAML
 from des_cli.errors import ExitCode
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget, MetricKey
-from des_cli.model.motion import Motion
+from des_cli.model.motion import GOffset, Motion
 from des_cli.model.profile import Reduction
 from des_cli.pipeline import reduce_profile
 from des_cli.profiles_in.expression import FUNCTIONS
 from des_cli.profiles_in.load import load_profile
 from des_cli.profiles_in.machine_schema import JointLimitsSection, MachineSection, OccupantSection
 from des_cli.profiles_in.machine_yaml import parse_machine
+from des_cli.results.asked_g import asked_g_metrics
 from des_cli.runs_out.tables import trajectory_names
 from des_cli.units import UNITS, split_unit, suffixes
 
@@ -136,6 +137,8 @@ def test_metrics(metrics: dict) -> None:
     rows = re.findall(r"^\| `(\w+)` \| (.+) \|$", section("metrics.json"), re.M)
     assert {name for name, _ in rows} == set(metrics)
     metrics["solver"]["budget"] = None  # a mapping of metrics, or null
+    assert metrics["asked_g"] is None
+    metrics["asked_g"] = asked_g_metrics(GOffset(0.0, 0.0, 0.0, 0.0, 0.0))
     optional = {"recorded_attitude_error_max_deg", "r1"}
     for name, cell in rows:
         words = {part for word in named(cell) for part in word.split(".")}

@@ -39,7 +39,7 @@ CONTRACT = {
         "seat_rate_deviation_relative", "seat_g_rms_error_g",
         "seat_angular_acceleration_rms_error_rad_s2", "attitude_error_max_deg",
     },
-    "changes": {"damping", "smoothing"},
+    "changes": {"damping", "machine", "smoothing"},
     "baseline": {"report_sweep", "constant_p"},
     "limits": {"desired", "modified"},
     "singularity": {"min_abs_cos_fork", "damped_samples", "max_residual_rad_s"},
@@ -153,7 +153,7 @@ def test_a_motion_that_is_not_replaced_costs_nothing(run):
         "seat_angular_acceleration_rms_error_rad_s2": 0.0,
         "attitude_error_max_deg": 0.0,
     }
-    assert run.metrics["changes"] == {"damping": None, "smoothing": None}
+    assert run.metrics["changes"] == {"damping": None, "machine": None, "smoothing": None}
 
 
 def test_the_constant_factor_has_the_solutions_reduction(run):

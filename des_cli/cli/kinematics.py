@@ -109,13 +109,13 @@ def _motion(
     """Return the kinematics of a profile's desired motion."""
     from des_cli.batch import load_job
     from des_cli.cli.state_text import motion_text
-    from des_cli.kinematics.desired import make_desired
+    from des_cli.reduction.desired import find_desired
     from des_cli.runs_out.state_tables import encode_states
     from des_cli.study.state import report_motion
 
     stdin = read_stdin((source,)) if source == STANDARD_STREAM else None
     profile = load_job(Job(source, settings=settings, columns=columns, stdin=stdin))
-    motion = make_desired(profile).motion
+    motion = find_desired(profile).motion
     t: Floats = motion.t
     report = report_motion(profile.machine, profile.seat, motion)
     if form == "text":

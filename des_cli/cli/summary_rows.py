@@ -19,6 +19,7 @@ _KINDS = ("peak", "limit")
 
 CHANGES = {
     "damping": "changes.damping",
+    "machine": "changes.machine",
     "smoothing": "changes.smoothing",
     "limits": "executable",
 }

@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from des_cli.model.profile import Profile
 
 
+KINDS = {"JointCommands": "joints", "BodyRates": "body_rates", "GCommand": "g"}
+"""What the commands of a profile are called, by the class that the model has for them."""
+
+
 @click.command(
     short_help="Check profiles and name all of their problems.",
     epilog="""\b
@@ -104,7 +108,6 @@ def _write(console: Console, line: str) -> None:
 def understood(source: str, profile: Profile) -> dict[str, Any]:
     """Return what a profile was taken for."""
     from des_cli.model.machine import JOINTS
-    from des_cli.model.profile import JointCommands
     from des_cli.profiles_in.machine_yaml import occupant_mapping
 
     reduction, machine = profile.reduction, profile.machine
@@ -112,7 +115,7 @@ def understood(source: str, profile: Profile) -> dict[str, Any]:
         "source": source,
         "ok": True,
         "name": profile.name,
-        "kind": "joints" if isinstance(profile.command, JointCommands) else "body_rates",
+        "kind": KINDS[type(profile.command).__name__],
         "samples": len(profile.t),
         "duration_s": float(profile.t[-1] - profile.t[0]),
         "machine": machine.name,
@@ -142,7 +145,7 @@ def _rejected(source: str, failure: Failure) -> dict[str, Any]:
 
 
 def _line(facts: dict[str, Any]) -> str:
-    kind = {"joints": "joint commands", "body_rates": "body rates"}[facts["kind"]]
+    kind = {"joints": "joint commands", "body_rates": "body rates", "g": "asked G"}[facts["kind"]]
     parts = [
         f"{facts['method']} cross-coupling by {facts['algorithm']}",
         facts["control"],

@@ -35,6 +35,7 @@ def make_desired(profile: Profile, *, divide: bool = True) -> DesiredMotion:
     Parameters
     ----------
     profile : Profile
+        Of joint commands or body rates.
     divide : bool
         Whether body rates may be put on more rows than the profile has.
 
@@ -49,7 +50,9 @@ def make_desired(profile: Profile, *, divide: bool = True) -> DesiredMotion:
     chain = chain_of(profile.machine, profile.seat)
     if isinstance(profile.command, JointCommands):
         return _from_joints(chain, profile, profile.command)
-    return _from_body_rates(chain, profile, profile.command, divide=divide)
+    if isinstance(profile.command, BodyRates):
+        return _from_body_rates(chain, profile, profile.command, divide=divide)
+    raise TypeError("an asked G takes the machine's limits: reduction.desired.find_desired")
 
 
 def _from_joints(chain: Chain, profile: Profile, command: JointCommands) -> DesiredMotion:

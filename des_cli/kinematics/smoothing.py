@@ -17,7 +17,7 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import mean_of_sides
-from des_cli.model.profile import BodyRates, JointCommands
+from des_cli.model.profile import BodyRates, GCommand, JointCommands
 
 ORDER = 4
 """Order of the Butterworth low-pass, each way."""
@@ -37,19 +37,19 @@ MOST_CELLS = 5_000_000
 
 
 def smooth_command(
-    t: Floats, command: JointCommands | BodyRates, cutoff_hz: float
-) -> JointCommands | BodyRates:
+    t: Floats, command: JointCommands | BodyRates | GCommand, cutoff_hz: float
+) -> JointCommands | BodyRates | GCommand:
     """Return a command without what is faster than a cutoff.
 
     Parameters
     ----------
     t : (n,) array
         Sample times [s].
-    command : JointCommands or BodyRates
+    command : JointCommands, BodyRates or GCommand
         Joint commands: the arm's rate and the positions are smoothed, and the
         rates of fork and cab are the derivatives of the smoothed positions. Body
         rates: their values at samples, the mean of both sides where they step; a
-        recorded attitude is kept.
+        recorded attitude is kept. An asked G, and rates beside it, likewise.
     cutoff_hz : float
         [Hz]; infinite for the command as it is.
 
@@ -70,8 +70,12 @@ def smooth_command(
             rate_start=slope[:-1, 1:],
             rate_end=slope[1:, 1:],
         )
-    rates = mean_of_sides(np.stack([command.start, command.end], axis=1))
-    value, middle, _ = smooth_samples(t, rates, cutoff_hz)
+    sides = mean_of_sides(np.stack([command.start, command.end], axis=1))
+    value, middle, _ = smooth_samples(t, sides, cutoff_hz)
+    if isinstance(command, GCommand):
+        beside = None if command.rates is None else smooth_command(t, command.rates, cutoff_hz)
+        assert beside is None or isinstance(beside, BodyRates), "rates stay rates"
+        return replace(command, start=value[:-1], end=value[1:], rates=beside)
     return BodyRates(value[:-1], middle, value[1:], command.attitude)
 
 

@@ -87,6 +87,31 @@ class Motion:
 
 
 @dataclass(frozen=True)
+class GOffset:
+    """How far the G that a machine can make is from the one that is asked.
+
+    Parameters
+    ----------
+    rms, largest : float
+        Of the length of the difference of the G-vectors [g].
+    largest_at : float
+        Time of the largest [s].
+    onset_asked, onset_made : float
+        Largest change of |G| over a tenth of a second, per second [g/s].
+    roll_rate_rms, pitch_rate_rms : float, optional
+        Of the difference of the seat's rates, where rates are asked beside the G [rad/s].
+    """
+
+    rms: float
+    largest: float
+    largest_at: float
+    onset_asked: float
+    onset_made: float
+    roll_rate_rms: float | None = None
+    pitch_rate_rms: float | None = None
+
+
+@dataclass(frozen=True)
 class Shortfall:
     """What a profile asks of the seat beyond what its joint motion makes: asked less made.
 
@@ -134,6 +159,8 @@ class DesiredMotion:
     recorded_attitude_error : float, optional
         Largest geodesic angle between the attitude integrated from the rates
         and the recorded one, both relative to the first sample [rad].
+    g_offset : GOffset, optional
+        How near that is.
     shortfall : Shortfall, optional
         What is asked for and not made; None where the joints make all of it.
     rates : BodyRates, optional
@@ -148,6 +175,7 @@ class DesiredMotion:
     residual: Floats
     attitude_error: float = 0.0
     recorded_attitude_error: float | None = None
+    g_offset: GOffset | None = None
     shortfall: Shortfall | None = None
     rates: BodyRates | None = None
     remarks: tuple[str, ...] = ()

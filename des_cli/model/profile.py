@@ -109,6 +109,42 @@ class BodyRates:
         return np.asarray(constant + s * (linear + s * (square + s * cube)))
 
 
+WASHOUT = 2.0
+"""Time constant [s] with which rates beside an asked G are washed out, unless said."""
+
+
+@dataclass(frozen=True)
+class GCommand:
+    """The G-vector that the pilot is to feel, and perhaps rates beside it.
+
+    Parameters
+    ----------
+    start, end : (n - 1, 3) array
+        Asked Gx, Gy, Gz at both ends of every interval, in the pilot's signs
+        (``kinematics.seat``) [g]; linear between, and a step at a sample is one.
+    rates : BodyRates, optional
+        Roll and pitch rate that are followed at high frequency. The yaw rate is zero: no
+        joint is left for it.
+    washout : float
+        Time constant [s] above which the rates give way to the direction of G.
+    """
+
+    start: Floats
+    end: Floats
+    rates: BodyRates | None = None
+    washout: float = WASHOUT
+
+    def __post_init__(self) -> None:
+        n = len(self.start)
+        freeze(self, "start", (n, 3))
+        freeze(self, "end", (n, 3))
+
+    @property
+    def sides(self) -> Floats:
+        """Asked G at both ends of every interval, (n - 1, 2, 3) [g]."""
+        return np.stack([self.start, self.end], axis=1)
+
+
 FELT_BUDGETS = (
     Budget("seat_g_rms_error_g", 0.05),
     Budget("seat_rate_deviation_relative", 0.1),
@@ -203,10 +239,10 @@ class Profile:
     name : str
     t : (n,) array
         Sample times, strictly increasing, n >= 2 [s].
-    command : JointCommands or BodyRates
+    command : JointCommands, BodyRates or GCommand
     initial_angle : (3,) array
         Arm, fork and cab angle at the first sample [rad]; for joint commands
-        only the arm's is used.
+        and an asked G only the arm's is used.
     machine, seat : Machine, Seat
     reduction : Reduction
     sha256 : str
@@ -220,7 +256,7 @@ class Profile:
 
     name: str
     t: Floats
-    command: JointCommands | BodyRates
+    command: JointCommands | BodyRates | GCommand
     machine: Machine
     seat: Seat = field(default_factory=Seat)
     initial_angle: Floats = field(default_factory=lambda: np.zeros(3))

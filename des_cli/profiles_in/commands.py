@@ -29,10 +29,13 @@ from des_cli.profiles_in.sampling import (
 )
 from des_cli.profiles_in.schema import Command
 from des_cli.profiles_in.sections import Measure, Section
+from des_cli.profiles_in.wording import one_of
 from des_cli.profiles_in.yaml_nodes import Step
 from des_cli.units import Unit, split_unit
 
 COMMAND: TypeAdapter[Any] = TypeAdapter(Command)
+
+_GRID = ("start", "stop", "step")
 
 _JUMP_TOLERANCE = 1e-9
 """A position jump that rounding explains, relative to 1 rad."""
@@ -41,13 +44,30 @@ _COVER_TOLERANCE = 1e-9
 """How far, in parts of 1 s or of the time, segments may miss the ends of the profile."""
 
 
-def read_time(section: Section, findings: Findings) -> tuple[float, float, float] | None:
-    """Return start, stop and step [s], or None after saying what is wrong."""
-    start, stop, step = (section.si(stem) for stem in ("start", "stop", "step"))
+def read_time(
+    section: Section, findings: Findings, default: Mapping[str, float] | None = None
+) -> tuple[float, float, float] | None:
+    """Return start, stop and step [s], or None after saying what is wrong.
+
+    Parameters
+    ----------
+    section : Section
+    findings : Findings
+    default : mapping of str to float, optional
+        What those are that are not given [s]; without it each must be.
+    """
+    default = default or {}
     known = len(findings.problems)
+    for measure in section.measures:
+        if section.given(measure.stem) is None and measure.stem not in default:
+            findings.add(["time"], f"{measure.title} is missing: give {one_of(measure.keys)}")
+    if len(findings.problems) > known:
+        return None
+    start, stop, step = (section.si(stem, default.get(stem, 0.0)) for stem in _GRID)
     if not stop > start:
-        path = ["time", str(section.given_key("stop"))]
-        findings.add(path, f"must be greater than {section.written('start')}")
+        given = section.given_key("stop")
+        least = section.written("start") if section.given_key("start") else f"{start:g} s"
+        findings.add(["time", *([given] if given else [])], f"must be greater than {least}")
     if not step > 0:
         findings.add(["time", str(section.given_key("step"))], "must be greater than 0")
     if len(findings.problems) > known:
@@ -131,7 +151,7 @@ def _read(
     for stem, (key, value) in values.items():
         parts, unit = pieces_of(value), split_unit(key)[1]
         assert unit is not None, "the keys of a measure have units"
-        if _covers(parts, time, [name, key], findings):
+        if covers(parts, time, [name, key], findings):
             pieces[stem], units[stem], paths[stem] = parts, unit, [name, key]
     if not pieces:
         return None
@@ -142,18 +162,18 @@ def _read(
     if work > MAX_WORK:
         findings.add([name], "takes too much arithmetic; give a longer step or simpler expressions")
         return None
-    sample = _sample_joints if name == "joints" else _sample_body_rates
+    sample = _sample_joints if name == "joints" else sample_body_rates
     commands = sample(pieces, units, paths, t, findings)
     return None if commands is None else (t, commands)
 
 
-def _covers(
+def covers(
     pieces: tuple[Piece, ...],
     time: tuple[float, float, float],
     path: list[Step],
     findings: Findings,
 ) -> bool:
-    """Whether segments reach from the start to the stop; say where they do not."""
+    """Tell whether segments reach from the start to the stop; say where they do not."""
     known = len(findings.problems)
     start, stop, _ = time
     first, last = pieces[0], pieces[-1]
@@ -240,13 +260,14 @@ def _piece_path(path: list[Step], pieces: tuple[Piece, ...], at: float) -> list[
     return path
 
 
-def _sample_body_rates(
+def sample_body_rates(
     pieces: Mapping[str, tuple[Piece, ...]],
     units: Mapping[str, Unit],
     paths: Mapping[str, list[Step]],
     t: Floats,
     findings: Findings,
 ) -> BodyRates | None:
+    """Sample p, q and r on a grid (n,), or say what is wrong with them."""
     columns: list[tuple[Floats, Floats, Floats]] = []
     for stem in pieces:
         sides = _sides(stem, pieces, units, paths, t, findings, rates=False)

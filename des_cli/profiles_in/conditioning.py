@@ -20,6 +20,7 @@ from des_cli.model.arrays import Floats, Indices
 from des_cli.profiles_in.attitude import QUATERNION, interpolate_attitude
 from des_cli.profiles_in.conditioning_schema import EulerOrder
 from des_cli.profiles_in.findings import Findings
+from des_cli.profiles_in.g_schema import G_STEMS
 from des_cli.profiles_in.sampling import MAX_SAMPLES
 
 RATES = ("p", "q", "r")
@@ -166,6 +167,8 @@ def in_seat_axes(
     turned = dict(record)
     if np.array_equal(conditioning.turn, np.eye(3)):
         return turned
+    if set(G_STEMS) & set(record):
+        raise _refused(label, "axes", "is for body rates or an attitude; this is an asked G")
     if "p" not in record and QUATERNION[0] not in record:
         raise _refused(label, "axes", "is for body rates or an attitude; these are joint commands")
     if "p" in record:

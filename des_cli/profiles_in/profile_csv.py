@@ -9,7 +9,7 @@ import numpy as np
 
 from des_cli.errors import Problem, ProfileError
 from des_cli.model.arrays import Floats
-from des_cli.model.profile import BodyRates, JointCommands
+from des_cli.model.profile import BodyRates, GCommand, JointCommands
 from des_cli.profiles_in.angles import unwrap
 from des_cli.profiles_in.attitude import (
     ALIASES,
@@ -21,6 +21,8 @@ from des_cli.profiles_in.attitude import (
 )
 from des_cli.profiles_in.conditioning import Conditioning, in_seat_axes, resampled, rows_inside
 from des_cli.profiles_in.csv_table import Header, read_columns, split_header
+from des_cli.profiles_in.g_commands import sampled_g
+from des_cli.profiles_in.g_schema import G_STEMS, RATE_STEMS
 from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
 from des_cli.profiles_in.interpolant import body_rates_of_samples
 from des_cli.profiles_in.positions import joint_commands_of_samples
@@ -36,6 +38,9 @@ QUANTITIES: Mapping[str, str] = {
     "p": "rate",
     "q": "rate",
     "r": "rate",
+    "gx": "specific_force",
+    "gy": "specific_force",
+    "gz": "specific_force",
     "roll": "angle",
     "pitch": "angle",
     "yaw": "angle",
@@ -45,6 +50,7 @@ QUANTITIES: Mapping[str, str] = {
 ALSO: Mapping[str, str] = {"arm": "angle"}
 """What it may measure instead."""
 
+_KINDS = {"rate": "a rate", "angle": "an angle", "time": "a time", "specific_force": "a G"}
 _JOINTS = ("arm", "fork", "cab")
 _RATES = ("p", "q", "r")
 IGNORED = ("quality",)
@@ -79,8 +85,8 @@ def parse_samples(
     conditioning: Conditioning | None = None,
     gaps: GapHandling | None = None,
     remarks: list[str] | None = None,
-) -> tuple[Floats, JointCommands | BodyRates]:
-    """Read joint commands, body rates or an attitude from the text of a CSV file.
+) -> tuple[Floats, JointCommands | BodyRates | GCommand]:
+    """Read joint commands, body rates, an attitude or an asked G from the text of a CSV file.
 
     Parameters
     ----------
@@ -102,7 +108,7 @@ def parse_samples(
     -------
     t : (n,) array
         [s]
-    commands : JointCommands or BodyRates
+    commands : JointCommands, BodyRates or GCommand
         Of an attitude without rates: the body rates that fly it.
 
     Raises
@@ -143,7 +149,7 @@ def parse_samples(
     if problems:
         raise ProfileError(problems)
     by_stem = in_seat_axes(by_stem, conditioning, label)
-    flies_attitude = not {"arm", "p"} & set(by_stem)
+    flies_attitude = not {"arm", "p", *G_STEMS} & set(by_stem)
     if flies_attitude:
         kept = rows_with_attitude(by_stem, label, remarks)
         by_stem = {stem: column[kept] for stem, column in by_stem.items()}
@@ -155,6 +161,8 @@ def parse_samples(
     if flies_attitude:
         return flown_attitude(by_stem, remarks)
     t = by_stem["t"]
+    if any(stem in by_stem for stem in G_STEMS):
+        return sampled_g(t, by_stem)
     if "arm" in by_stem:
         arm = next(column for column in chosen if column.stem == "arm")
         return t, joint_commands_of_samples(
@@ -196,6 +204,8 @@ def _kept(stems: set[str], *, euler: bool) -> set[str]:
     """Return which of the quantities that a file has are read."""
     if "arm" in stems:
         return {"t", *_JOINTS}
+    if stems & set(G_STEMS):
+        return {"t", *G_STEMS, *RATE_STEMS}
     kept = {"t", *(stems & set(_RATES))}
     if stems >= set(QUATERNION):
         return kept | set(QUATERNION)
@@ -227,7 +237,7 @@ def _unknown(name: str, stem: str) -> str:
     if quantity:
         base = name if name in QUANTITIES else stem
         units = one_of([f"{base}_{suffix}" for suffix in suffixes(quantity)])
-        kind = {"rate": "a rate", "angle": "an angle", "time": "a time"}[quantity]
+        kind = _KINDS[quantity]
         return (
             f"the column {plain(name)}: {base} is {kind} and needs its unit in the name: {units} "
             f"(rename with --column {base}_{suffixes(quantity)[0]}={plain(name)})"
@@ -245,7 +255,12 @@ def _check_complete(
         if stems.count(stem) > 1:
             same = [column.name for column in found if column.stem == stem]
             problems.append(Problem(where, f"{stem} is given twice: {' and '.join(same)}"))
-    joints, rates = ([stem for stem in kind if stem in stems] for kind in (_JOINTS, _RATES))
+    joints, rates, asked = (
+        [stem for stem in kind if stem in stems] for kind in (_JOINTS, _RATES, G_STEMS)
+    )
+    if asked:
+        _check_beside_g(joints, rates, asked, stems, where, problems)
+        return
     if joints and rates:
         what = f"holds both joint commands ({', '.join(joints)}) and body rates"
         problems.append(Problem(where, f"{what} ({', '.join(rates)}); choose with --column"))
@@ -257,13 +272,34 @@ def _check_complete(
     if kind is None:
         what = "has neither joint commands (t_s,arm_rpm,fork_deg,cab_deg) nor body rates"
         what += " (t_s,p_rad_s,q_rad_s,r_rad_s) nor an attitude (t_s,q0,q1,q2,q3)"
-        problems.append(Problem(where, what))
+        problems.append(Problem(where, f"{what} nor G (t_s,gz_g)"))
         return
     for stem in ("t", *kind):
         if stem not in stems:
             units = suffixes(QUANTITIES[stem]) if stem in QUANTITIES else ()
             names = one_of([f"{stem}_{suffix}" for suffix in units]) or stem
             problems.append(Problem(where, f"a column is missing: {names}"))
+
+
+def _check_beside_g(
+    joints: list[str],
+    rates: list[str],
+    asked: list[str],
+    stems: list[str],
+    where: str,
+    problems: list[Problem],
+) -> None:
+    """Say what cannot stand beside an asked G, and whether its times are missing."""
+    choose = "choose with --column"
+    if joints:
+        what = f"holds both joint commands ({', '.join(joints)}) and G ({', '.join(asked)})"
+        problems.append(Problem(where, f"{what}; {choose}"))
+    elif "r" in rates:
+        what = f"holds all body rates beside G ({', '.join(asked)}); {choose}: p and q can be"
+        problems.append(Problem(where, f"{what} followed beside it, and no joint is left for r"))
+    elif "t" not in stems and not problems:
+        units = one_of([f"t_{suffix}" for suffix in suffixes("time")])
+        problems.append(Problem(where, f"a column is missing: {units}"))
 
 
 def _check_times(header: Header, column: _Column, times: Floats, problems: list[Problem]) -> None:

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from des_cli.errors import DesError, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Machine, Seat
-from des_cli.model.profile import BodyRates, JointCommands, Profile
+from des_cli.model.profile import BodyRates, GCommand, JointCommands, Profile
 from des_cli.profiles_in.commands import check_commands, read_commands, read_time
 from des_cli.profiles_in.conditioning import (
     Conditioning,
@@ -23,6 +23,7 @@ from des_cli.profiles_in.conditioning import (
     refuse_beside_expressions,
 )
 from des_cli.profiles_in.findings import Findings
+from des_cli.profiles_in.g_commands import read_g
 from des_cli.profiles_in.gaps import GapHandling
 from des_cli.profiles_in.machine_yaml import (
     build_machine,
@@ -41,9 +42,9 @@ from des_cli.profiles_in.source import decode, label_of, read_source
 from des_cli.profiles_in.wording import one_of
 from des_cli.profiles_in.yaml_nodes import Node, parse_yaml
 
-_COMMANDS = ("joints", "body_rates", "samples")
+_COMMANDS = ("joints", "body_rates", "g", "samples")
 _AnySection = TypeVar("_AnySection", bound=Section)
-Commands = tuple[Floats, JointCommands | BodyRates]
+Commands = tuple[Floats, JointCommands | BodyRates | GCommand]
 
 
 @dataclass
@@ -221,15 +222,18 @@ def read_seat(section: Any) -> Seat:
 def read_initial(section: Any, commands: Commands | None, findings: Findings) -> Floats:
     """Return the joint angles at the first sample, (3,) [rad]."""
     given = [section.si(joint) if section is not None else 0.0 for joint in JOINTS]
-    if commands is not None and isinstance(commands[1], JointCommands):
-        arm_start = commands[1].arm_start
+    if commands is not None and not isinstance(commands[1], BodyRates):
+        by_g = isinstance(commands[1], GCommand)
+        leader = "the first G asks" if by_g else "its position command does"
+        arm_start = commands[1].arm_start if isinstance(commands[1], JointCommands) else None
         for joint in JOINTS[1:] if arm_start is None else JOINTS:
             key = section.given_key(joint) if section is not None else None
             if key:
-                words = f"the {joint} starts where its position command does; leave this out"
+                words = f"the {joint} starts where {leader}; leave this out"
                 findings.add(["initial", key], words, of_key=True)
         if arm_start is not None:
             given[0] = arm_start
+    if commands is not None and isinstance(commands[1], JointCommands):
         given[1:] = commands[1].position[0].tolist()
     return np.array(given)
 
@@ -257,6 +261,9 @@ def document_commands(
         )
     if given:
         refuse_beside_expressions(present, given[0], findings)
+    if given == ["g"]:
+        usable = sections["g"] is not None and ("time" not in present or sections["time"])
+        return read_g(sections["g"], sections["time"], findings) if usable else None
     if "time" not in present:
         findings.add((), "time is missing: give time: {start_s: …, stop_s: …, step_s: …}")
     time = None if sections["time"] is None else read_time(sections["time"], findings)

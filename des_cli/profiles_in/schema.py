@@ -29,6 +29,7 @@ from des_cli.profiles_in.conditioning_schema import (
     Trim,
 )
 from des_cli.profiles_in.expression import Expression, ExpressionError, parse_expression
+from des_cli.profiles_in.g_schema import g_section
 from des_cli.profiles_in.gaps import GapPolicy
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE, MachineSection
 from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault, measured
@@ -112,10 +113,11 @@ def _same_time(a: float, b: float) -> bool:
     return abs(a - b) <= 1e-9 * max(1.0, abs(a), abs(b))
 
 
+_Number = Annotated[Number, Tag("<number>")]
+_Text = Annotated[ExpressionText, Tag("<text>")]
+_Segments = Annotated[list[Segment], AfterValidator(_check_segments), Tag("<list>")]  # type: ignore[valid-type]
 Command = Annotated[
-    Annotated[Number, Tag("<number>")]
-    | Annotated[ExpressionText, Tag("<text>")]
-    | Annotated[list[Segment], AfterValidator(_check_segments), Tag("<list>")],  # type: ignore[valid-type]
+    _Number | _Text | _Segments,
     _choice("a number, an expression in t, or a list of segments {from_s, to_s, value}"),
 ]
 
@@ -139,9 +141,10 @@ Time = measured(
     "Time",
     "The grid of profile times.",
     (
-        Measure("start", "time", "the first time"),
-        Measure("stop", "time", "the last time"),
-        Measure("step", "time", "the time between samples"),
+        # read_time asks for each, unless onsets of G make the times
+        Measure("start", "time", "the first time", required=False),
+        Measure("stop", "time", "the last time", required=False),
+        Measure("step", "time", "the time between samples", required=False),
     ),
 )
 ARM_ANGLES = tuple(f"arm_{suffix}" for suffix in suffixes("angle"))
@@ -167,6 +170,7 @@ BodyRates = measured(
     ),
     Command,
 )
+G = g_section(_Number | _Text | _Segments, Command)
 
 
 class SamplesReading(Section):
@@ -317,6 +321,7 @@ class ProfileDocument(ProfileSettings):
     time: Time = OMITTED  # type: ignore[valid-type]
     joints: Joints = OMITTED  # type: ignore[valid-type]
     body_rates: BodyRates = OMITTED  # type: ignore[valid-type]
+    g: G = OMITTED  # type: ignore[valid-type]
     samples: Samples = OMITTED
     trim: Trim = OMITTED  # type: ignore[valid-type]
     resample: Resample = OMITTED  # type: ignore[valid-type]

@@ -29,12 +29,16 @@ def condition_metrics(profile: Profile, asked: DesiredMotion, target: Motion) ->
     Returns
     -------
     dict
-        ``damping`` (rates held at a limit, or damped near the singularity) and
-        ``smoothing``; None for a step that was not taken.
+        ``damping`` (rates held at a limit, or damped near the singularity), ``machine``
+        (what of an asked G it cannot make) and ``smoothing``; None for a step that was not
+        taken.
     """
     record, missing = asked.motion, asked.shortfall
+    lost = None if missing is None else _cost(profile, record, record, missing)
+    by_g = asked.g_offset is not None
     return {
-        "damping": None if missing is None else _cost(profile, record, record, missing),
+        "damping": None if by_g else lost,
+        "machine": lost if by_g else None,
         "smoothing": None if target is record else _cost(profile, record, target),
     }
 

@@ -8,14 +8,14 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import Shortfall
-from des_cli.model.profile import BodyRates, Profile
+from des_cli.model.profile import BodyRates, GCommand, Profile
 from des_cli.verify.felt import Felt
 
 
 def as_asked(felt: Felt, profile: Profile, missing: Shortfall | None) -> Felt:
     """Return what is felt of a joint motion with what was asked for beyond it.
 
-    Recorded rates are taken from the profile itself, whatever became of them.
+    Recorded rates and an asked G are taken from the profile itself, whatever became of them.
 
     Parameters
     ----------
@@ -28,14 +28,17 @@ def as_asked(felt: Felt, profile: Profile, missing: Shortfall | None) -> Felt:
         return felt
     turning = felt.turning + _states(missing.seat_angular_acceleration)
     command, rate = profile.command, felt.rate + _states(missing.seat_rate)
+    g = felt.g + _states(missing.seat_g)
     if isinstance(command, BodyRates):
         rate = np.concatenate([command.start, command.end]).T
+    if isinstance(command, GCommand):
+        g = np.concatenate([command.start, command.end]).T
     turn = np.concatenate([missing.attitude[:-1], missing.attitude[1:]])
     return replace(
         felt,
         rate=rate,
         turning=turning,
-        g=felt.g + _states(missing.seat_g),
+        g=g,
         rotation=np.einsum("ijm,mjk->ikm", felt.rotation, _exponential(turn)),
     )
 

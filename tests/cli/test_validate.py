@@ -51,6 +51,12 @@ def test_a_missing_file_is_1(invoke) -> None:
     assert "nowhere.yaml" in result.stderr
 
 
+def test_an_asked_g_is_named_as_one(invoke) -> None:
+    done = invoke("validate", "g_rapid_onset", "--format", "json")
+    assert json.loads(done.stdout)["kind"] == "g"
+    assert "asked G" in invoke("validate", "g_rapid_onset").stdout
+
+
 def test_several_kinds_of_failure_are_1(invoke, write_profile) -> None:
     bad = write_profile("bad", fork_deg="sin(")
     assert invoke("validate", bad.name, "nowhere.yaml").exit_code == 1

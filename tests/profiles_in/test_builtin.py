@@ -13,6 +13,7 @@ from des_cli.kinematics.response import respond
 from des_cli.model.profile import BodyRates, JointCommands, Reduction
 from des_cli.profiles_in.builtin import builtin_profiles
 from des_cli.profiles_in.load import load_profile
+from des_cli.reduction.desired import find_desired
 
 NAMES = [profile.name for profile in builtin_profiles()]
 COBRAS = {"cobra", "cobra_felt", "cobra_table3"}
@@ -21,7 +22,8 @@ COBRAS = {"cobra", "cobra_felt", "cobra_table3"}
 def test_the_shipped_maneuvers_are_these() -> None:
     assert {
         "barrel_roll", "climbing_turn_rates", "cobra", "cobra_felt", "cobra_table3",
-        "flight_log", "gradual_onset", "post_stall_reversal", "rapid_onset", "rolling_spin",
+        "flight_log", "g_air_combat", "g_flight", "g_gradual_onset", "g_rapid_onset",
+        "gradual_onset", "post_stall_reversal", "rapid_onset", "rolling_spin",
         "slalom",
     } <= set(NAMES)  # fmt: skip
     assert sorted(NAMES) == NAMES
@@ -48,7 +50,7 @@ def test_each_loads_by_its_name_from_any_folder(
 @pytest.mark.parametrize("name", NAMES)
 def test_each_is_a_maneuver_with_coriolis_within_the_limits(name: str) -> None:
     profile = load_profile(name)
-    desired = make_desired(profile)
+    desired = find_desired(profile)
     motion = desired.motion
     response = respond(profile.machine, profile.seat, motion)
     assert np.abs(response.coriolis_seat).max() > 0.05

@@ -13,8 +13,8 @@ from des_cli.units import suffixes
 def test_every_key_of_the_contract_is_in_the_schema() -> None:
     schema = profile_json_schema()
     assert set(schema["properties"]) == {
-        "format", "name", "machine", "seat", "initial", "time", "joints", "body_rates", "samples",
-        "gap", "trim", "axes", "resample", "smooth", "reduction",
+        "format", "name", "machine", "seat", "initial", "time", "joints", "body_rates", "g",
+        "samples", "gap", "trim", "axes", "resample", "smooth", "reduction",
     }  # fmt: skip
     assert schema["required"] == ["format"]
     assert schema["additionalProperties"] is False

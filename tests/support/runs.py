@@ -216,6 +216,7 @@ def _metrics(name: str, control: str, before: Response, after: Response) -> dict
             "message": "The first-order conditions hold to rounding.",
         },
         "parameters": None,
+        "asked_g": None,
         "coriolis": coriolis,
         "fidelity": {
             "joint_deviation_relative": 0.128,

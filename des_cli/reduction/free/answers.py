@@ -199,7 +199,8 @@ class Answers:
         if over:
             return (
                 "keeping the machine's limits alone costs more than the budgets allow: "
-                f"{', '.join(over)}; smooth the motion, allow more, or take --limits warn"
+                f"{', '.join(over)}; smooth the motion, allow more, or let --allow-change make the "
+                "budgets those of what is added"
             )
         desired = sample_spline(fit, task.reference.t)
         response = respond_on(task.chain, task.machine.gravity, desired)
