@@ -37,7 +37,7 @@ CONTRACT = {
     "executable": {
         "replaced", "breaks_limits", "joint_change_relative", "joint_change_max_rad",
         "seat_rate_deviation_relative", "seat_g_rms_error_g",
-        "seat_angular_acceleration_rms_error_rad_s2", "attitude_error_max_deg",
+        "seat_angular_acceleration_rms_error_rad_s2", "attitude_error_max_deg", "coriolis_reduction",
     },
     "changes": {"damping", "machine", "smoothing"},
     "baseline": {"report_sweep", "constant_p"},
@@ -152,6 +152,7 @@ def test_a_motion_that_is_not_replaced_costs_nothing(run):
         "seat_g_rms_error_g": 0.0,
         "seat_angular_acceleration_rms_error_rad_s2": 0.0,
         "attitude_error_max_deg": 0.0,
+        "coriolis_reduction": 0.0,
     }
     assert run.metrics["changes"] == {"damping": None, "machine": None, "smoothing": None}
 

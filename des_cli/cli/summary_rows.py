@@ -63,7 +63,8 @@ def _change_numbers(step: Mapping[str, Any]) -> list[str]:
     return [
         f"seat rate {percent(rate)}",
         f"G {number(force)} g rms",
-        f"angle {number(attitude)} deg",
+        f"attitude {number(attitude)} deg",
+        f"cross-coupling {change(read(step, 'coriolis_reduction'))}",
     ]
 
 

@@ -20,7 +20,7 @@ from des_cli.model.profile import Profile, Reduction
 from des_cli.reduction.fidelity import Deviation
 
 LARGEST_CHANGE = 0.1
-"""Share of the record's seat rate, or of its G-vector, that may be changed before the
+"""Share of the record's seat rate, or of an asked G, that may be changed before the
 reduction without a word of the user: what a silent profile may lose of the seat rate in all."""
 
 SHARES: tuple[MetricKey, ...] = ("seat_rate_deviation_relative", "seat_g_deviation_relative")
@@ -59,18 +59,25 @@ class Change:
         same = self.deviation.modified is self.deviation.reference
         return same and self.deviation.shortfall is None
 
+    @property
+    def _asks_for_g(self) -> bool:
+        """Whether the record is one of G; that of rates is made of their derivatives, noise too."""
+        missing = self.deviation.shortfall
+        return missing is not None and bool(np.any(missing.seat_g))
+
     def refusal(self, reduction: Reduction) -> str:
         """Say that more was changed than is allowed; empty where it was not."""
         if self.nothing:
             return ""
         shares = {metric: self.deviation.value(metric) for metric in SHARES}
-        allowed = {metric: _allowed(reduction, metric) for metric in SHARES}
-        if all(shares[metric] <= allowed[metric] for metric in SHARES):
+        recorded = SHARES if self._asks_for_g else SHARES[:1]
+        allowed = {metric: _allowed(reduction, metric) for metric in recorded}
+        if all(shares[metric] <= allowed[metric] for metric in recorded):
             return ""
         told = " and ".join(
             f"{100.0 * shares[metric]:.1f} % of its {METRICS[metric].label}" for metric in SHARES
         )
-        enough = np.ceil(100.0 * max(shares.values())) / 100.0
+        enough = np.ceil(100.0 * max(shares[metric] for metric in recorded)) / 100.0
         return (
             f"the record is changed by {told} before any reduction, and "
             f"{100.0 * min(allowed.values()):g} % is allowed; condition the record, or take "
@@ -84,8 +91,8 @@ class Change:
 
         Where the user allows a change, a budget is what the reduction may add to it. Two
         deviations that know nothing of each other add up in their squares, so that the
-        whole is at most ``hypot(change, budget)``; a ratio of sizes is one of the changed
-        motion's.
+        whole is at most ``hypot(change, budget)``. A ratio of sizes is to those of the
+        changed motion: the noise of a record is no size to compare a ride with.
 
         Parameters
         ----------
@@ -104,7 +111,7 @@ class Change:
     def _most(self, budget: Budget, between: float) -> float:
         change = max(self.deviation.value(budget.metric), between)
         if budget.metric in RATIOS:
-            return budget.most * max(1.0, change)
+            return budget.most * change
         if budget.metric == "mean_square_one_minus_p":
             return budget.most
         if budget.metric == "joint_deviation_relative_squared":

@@ -8,11 +8,12 @@ import numpy as np
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.machine import JOINTS
-from des_cli.model.motion import DesiredMotion, Motion, Shortfall
+from des_cli.model.motion import DesiredMotion, Motion, Shortfall, integrate_sides
 from des_cli.model.profile import Profile
 from des_cli.reduction.baseline import joint_deviation
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.limits import find_violations
+from des_cli.results.coriolis import relative_reduction
 
 
 def condition_metrics(profile: Profile, asked: DesiredMotion, target: Motion) -> dict[str, Any]:
@@ -69,11 +70,16 @@ def _cost(
     chains = (chain_of(profile.machine, profile.seat),) * 2
     deviation = Deviation.between(before, after, chains, profile.machine.gravity, shortfall=missing)
     moved = np.max(np.abs(after.angle - before.angle), axis=0)
+    energies = (
+        float(integrate_sides(before.step, np.sum(each.coriolis_seat**2, axis=-1)))
+        for each in (deviation.before, deviation.after)
+    )
     return {
         "joint_change_relative": joint_deviation(before, after),
         "joint_change_max_rad": {
             joint: float(value) for joint, value in zip(JOINTS, moved, strict=True)
         },
+        "coriolis_reduction": relative_reduction(*energies),
         **{
             metric: deviation.value(metric)
             for metric in (

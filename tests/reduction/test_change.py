@@ -85,7 +85,7 @@ def test_budgets_beside_an_allowed_change_are_what_is_added():
         if budget.metric in (RATE, G):
             assert widened[budget.metric] ** 2 == pytest.approx(value**2 + budget.most**2)
         else:
-            assert widened[budget.metric] == pytest.approx(budget.most * max(1.0, value))
+            assert widened[budget.metric] == pytest.approx(budget.most * value)
     seen = {b.metric: b.most for b in change.widened(reduction, {RATE: 0.7})}
     assert seen[RATE] == pytest.approx(np.hypot(0.7, 0.1))
     assert change.widened(Reduction()) == Reduction().budget

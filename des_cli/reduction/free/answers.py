@@ -198,7 +198,7 @@ class Answers:
             )
         if over:
             return (
-                "keeping the machine's limits alone costs more than the budgets allow: "
+                "conditioning and the machine's limits alone cost more than the budgets allow: "
                 f"{', '.join(over)}; smooth the motion, allow more, or let --allow-change make the "
                 "budgets those of what is added"
             )
