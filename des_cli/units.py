@@ -42,6 +42,7 @@ UNITS: tuple[Unit, ...] = (
     Unit("s", "time", 1.0),
     Unit("ms", "time", 1e-3),
     Unit("us", "time", 1e-6),
+    Unit("ns", "time", 1e-9),
     Unit("min", "time", 60.0),
     Unit("rad", "angle", 1.0),
     Unit("deg", "angle", math.pi / 180.0),
