@@ -98,7 +98,12 @@ def load_job(job: Job) -> Profile:
     from des_cli.profiles_in.load import load_profile
 
     return load_profile(
-        job.source, settings=job.settings, columns=dict(job.columns) or None, stdin=job.stdin
+        job.source,
+        settings=job.settings,
+        columns=dict(job.columns) or None,
+        stdin=job.stdin,
+        separator=job.separator,
+        decimal=job.decimal,
     )
 
 

@@ -65,7 +65,7 @@ def profile_argument(command: F) -> F:
 
 
 def setting_options(command: F) -> F:
-    """Add ``--set`` and ``--column``, which change how a profile is read."""
+    """Add the options that change how a profile is read, such as ``--set``."""
     settings = click.option(
         "--set",
         "settings",
@@ -82,7 +82,19 @@ def setting_options(command: F) -> F:
         callback=_read_columns,
         help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
     )
-    return settings(columns(command))
+    separator = click.option(
+        "--separator",
+        metavar="SIGN",
+        callback=_read_separator,
+        help="What stands between the columns of a CSV profile: ',', ';', '|', tab or space.",
+    )
+    decimal = click.option(
+        "--decimal",
+        metavar="SIGN",
+        callback=_read_decimal,
+        help="The decimal sign of a CSV profile: '.' or ','.",
+    )
+    return settings(columns(separator(decimal(command))))
 
 
 def text_or_json_option(text: str) -> Callable[[F], F]:
@@ -320,6 +332,29 @@ def _read_columns(
             raise click.BadParameter(f"{name!r} is given twice.")
         columns[name] = header
     return columns
+
+
+def _read_separator(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> str | None:
+    from des_cli.profiles_in.dialect import parse_separator
+
+    return None if value is None else _in_words(parse_separator, value)
+
+
+def _read_decimal(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> str | None:
+    from des_cli.profiles_in.dialect import parse_decimal
+
+    return None if value is None else _in_words(parse_decimal, value)
+
+
+def _in_words(parse: Callable[[str], str], value: str) -> str:
+    try:
+        return parse(value)
+    except ValueError as error:
+        raise click.BadParameter(f"{value!r}: {error}.") from None
 
 
 def _console(context: click.Context) -> Console:

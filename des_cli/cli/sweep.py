@@ -105,6 +105,8 @@ def sweep(
     controls: tuple[str, ...],
     settings: tuple[str, ...],
     columns: dict[str, str],
+    separator: str | None,
+    decimal: str | None,
     out: str | None,
     table_format: str | None,
     plot: str | None,
@@ -131,6 +133,8 @@ def sweep(
         profile,
         settings=settings,
         columns=columns,
+        separator=separator,
+        decimal=decimal,
         stdin=read_stdin((profile,)) if profile == STANDARD_STREAM else None,
     )
     points = _plan(source, reduction, swept, r2s or (), controls)

@@ -46,6 +46,8 @@ def validate(
     profiles: tuple[str, ...],
     settings: tuple[str, ...],
     columns: dict[str, str],
+    separator: str | None,
+    decimal: str | None,
     form: str,
     **reduction: Any,
 ) -> ExitCode:
@@ -65,6 +67,8 @@ def validate(
             source,
             settings=(*settings, *reduction_settings(reduction)),
             columns=columns,
+            separator=separator,
+            decimal=decimal,
             stdin=stdin if source == STANDARD_STREAM else None,
         )
         try:

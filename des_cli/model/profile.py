@@ -175,6 +175,8 @@ class Profile:
     reduction : Reduction
     sha256 : str
         Digest of the bytes that the profile was read from, with its overrides.
+    remarks : tuple of str
+        Sentences for the user on what was done to read the profile.
     """
 
     name: str
@@ -185,6 +187,7 @@ class Profile:
     initial_angle: Floats = field(default_factory=lambda: np.zeros(3))
     reduction: Reduction = field(default_factory=Reduction)
     sha256: str = ""
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         freeze(self, "t", (None,))

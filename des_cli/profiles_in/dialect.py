@@ -109,15 +109,17 @@ def recognise(text: str, separator: str, decimal: str | None) -> Dialect:
     text : str
         From the header on.
     separator : str
-        The one that is expected: it stands unless another one splits the rows
-        as it splits the header, and this one does not.
+        The one that is expected: it stands unless it does not split the rows as it
+        splits the header, or another one does and leaves more numbers.
     decimal : str, optional
         The one that was asked for: it stands unless no number is written with it
         and some are with the other.
     """
     lines = [line for line in text[: 1 << 16].splitlines()[: _LOOKED_AT + 1] if line.strip()]
-    others = [sign for sign in (";", "\t", "|", ",", " ") if sign != separator]
-    found = next((sign for sign in (separator, *others) if _splits(lines, sign)), separator)
+    # The expected one comes first, and of several that split as well the first one counts.
+    signs = (separator, *(sign for sign in (";", "\t", "|", ",", " ") if sign != separator))
+    likely = [sign for sign in signs if _splits(lines, sign)]
+    found = max(likely, key=lambda sign: _count_numbers(lines[1:], sign), default=separator)
     commas, points = _count_decimals(text, found, ","), 0
     if commas or decimal == ",":
         points = _count_decimals(text, found, ".")
@@ -157,6 +159,16 @@ def _splits(lines: Sequence[str], sign: str) -> bool:
     if not widths or widths[0] < 2:
         return False
     return 2 * sum(width == widths[0] for width in widths[1:]) >= len(widths) - 1
+
+
+def _count_numbers(lines: Sequence[str], sign: str) -> int:
+    """Count the cells that are numbers, with whatever decimal sign may stand beside a separator."""
+    dialects = [Dialect(sign, decimal) for decimal in ".," if decimal != sign]
+    return sum(
+        any(dialect.is_number(cell) for dialect in dialects)
+        for line in lines
+        for cell in dialects[0].split(line)
+    )
 
 
 def _without_blank_end(cells: list[str]) -> list[str]:

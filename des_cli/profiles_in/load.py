@@ -20,7 +20,7 @@ from des_cli.profiles_in.profile_yaml import (
     parse_profile,
     parse_settings,
 )
-from des_cli.profiles_in.source import decode, label_of, read_source
+from des_cli.profiles_in.source import decode, decode_table, label_of, read_source
 from des_cli.profiles_in.wording import did_you_mean
 
 STDIN_LABEL = "<stdin>"
@@ -34,6 +34,8 @@ def load_profile(
     settings: Sequence[str] = (),
     columns: Mapping[str, str] | None = None,
     stdin: bytes | None = None,
+    separator: str | None = None,
+    decimal: str | None = None,
 ) -> Profile:
     """Read and check a profile.
 
@@ -50,6 +52,9 @@ def load_profile(
         the name that it has in the file (``{"t_s": "t"}``).
     stdin : bytes, optional
         What standard input held, where ``source`` is ``-``.
+    separator, decimal : str, optional
+        For a CSV profile that is not written with commas and decimal points: what
+        stands between its columns, and its decimal sign.
 
     Returns
     -------
@@ -64,21 +69,21 @@ def load_profile(
     """
     columns = dict(columns or {})
     path, label, data = _read(source, stdin)
-    text = decode(data, label)
+    text, remarks = decode_table(data, label)
     folder = path.parent if path else Path()
     digest = hashlib.sha256(data)
-    if settings or columns:
-        digest.update(json.dumps([list(settings), sorted(columns.items())]).encode())
-    reading = Reading(label, folder, digest)
+    given = {"separator": separator, "decimal": decimal}
+    written = {key: value for key, value in given.items() if value is not None}
+    if settings or columns or written:
+        options = [list(settings), sorted(columns.items()), *([written] if written else [])]
+        digest.update(json.dumps(options).encode())
+    reading = Reading(label, folder, digest, [*remarks])
     name = _safe_name(path.stem if path else "stdin")
     try:
         if _is_yaml(path, text):
-            if columns:
-                raise UsageError(
-                    [Problem(label, "--column renames columns of a CSV profile; this is YAML")]
-                )
-            return parse_profile(text, reading, name, settings)
-        return _load_csv(text, reading, name, settings, columns)
+            _refuse_table_options(label, columns, written)
+            return parse_profile(decode(data, label), reading, name, settings)
+        return _load_csv(text, reading, name, settings, columns, written)
     except ProfileError as error:
         raise ProfileError(bounded(error.problems)) from None
 
@@ -116,6 +121,20 @@ def _is_yaml(path: Path | None, text: str) -> bool:
     return False
 
 
+def _refuse_table_options(
+    label: str, columns: Mapping[str, str], written: Mapping[str, str]
+) -> None:
+    """Refuse options that say how a CSV is to be read, of a YAML profile."""
+    problems = []
+    if columns:
+        problems.append(Problem(label, "--column renames columns of a CSV profile; this is YAML"))
+    for key in written:
+        what = f"--{key} says how a CSV profile is written; this is YAML: give samples.{key}"
+        problems.append(Problem(label, what))
+    if problems:
+        raise UsageError(problems)
+
+
 def _safe_name(stem: str) -> str:
     """Make a name that a folder may have."""
     return re.sub(r"[^\w .,+()-]", "_", stem).strip(" .")[:100] or "profile"
@@ -127,11 +146,12 @@ def _load_csv(
     name: str,
     settings: Sequence[str],
     columns: Mapping[str, str],
+    written: Mapping[str, str],
 ) -> Profile:
     problems: list[Problem] = []
     commands: Commands | None = None
     try:
-        commands = parse_samples(text, reading.label, columns)
+        commands = parse_samples(text, reading.label, columns, **written, remarks=reading.remarks)
     except ProfileError as error:
         problems += error.problems
     try:

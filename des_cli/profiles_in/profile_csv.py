@@ -3,65 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from des_cli.errors import Problem, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, JointCommands
-from des_cli.profiles_in.csv_table import Header, read_columns, split_header
+from des_cli.profiles_in.columns import QUATERNION, RATES, Column, choose_columns
+from des_cli.profiles_in.csv_header import Header, comment_lines, split_header
+from des_cli.profiles_in.csv_table import Rows, read_columns
 from des_cli.profiles_in.positions import middles_of_samples, rates_of_positions
+from des_cli.profiles_in.sample_times import SampleTimes, sample_times
 from des_cli.profiles_in.sampling import MAX_MAGNITUDE
-from des_cli.profiles_in.wording import did_you_mean, one_of, plain
-from des_cli.units import Unit, split_unit, suffixes
-
-QUANTITIES: Mapping[str, str] = {
-    "t": "time",
-    "arm": "rate",
-    "fork": "angle",
-    "cab": "angle",
-    "p": "rate",
-    "q": "rate",
-    "r": "rate",
-}
-"""What each column measures."""
-
-_JOINTS = ("arm", "fork", "cab")
-_RATES = ("p", "q", "r")
-QUATERNION = ("q0", "q1", "q2", "q3")
-"""Recorded attitude (w, x, y, z), without a unit."""
-
-IGNORED = ("quality",)
-"""Columns that recorders add and that say nothing about the motion."""
+from des_cli.profiles_in.wording import plain
 
 _UNIT_NORM = 0.01
 """How far a recorded attitude's norm may be from 1, as printing rounds it."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Column:
-    """A column that is read.
-
-    Parameters
-    ----------
-    stem : str
-        Which quantity it gives.
-    name : str
-        Its name with the unit.
-    in_file : str
-        Its name in the file.
-    unit : Unit, optional
-    """
-
-    stem: str
-    name: str
-    in_file: str
-    unit: Unit | None = None
-
-
 def parse_samples(
-    text: str, label: str, columns: Mapping[str, str]
+    text: str,
+    label: str,
+    columns: Mapping[str, str],
+    *,
+    separator: str | None = None,
+    decimal: str | None = None,
+    remarks: list[str] | None = None,
 ) -> tuple[Floats, JointCommands | BodyRates]:
     """Read joint commands or body rates from the text of a CSV file.
 
@@ -71,9 +38,12 @@ def parse_samples(
     label : str
         What messages call the file.
     columns : mapping of str to str
-        Name with its unit to the name in the file, for columns that the file
-        names otherwise; with any of these, columns that mean nothing to the
-        tool are ignored.
+        Our name to the name in the file, for columns that the file names
+        otherwise.
+    separator, decimal : str, optional
+        How the file is written; a comma and a point.
+    remarks : list of str, optional
+        Takes sentences on what was done to read the file.
 
     Returns
     -------
@@ -86,124 +56,56 @@ def parse_samples(
     ProfileError
         With everything that is wrong.
     """
-    header = split_header(text, label)
+    header = split_header(text, label, separator, decimal, columns.values())
+    told = [*header.remarks]
     problems: list[Problem] = []
-    chosen = _choose(header, columns, problems)
+    chosen = choose_columns(header, columns, problems, told)
     if problems:
         raise ProfileError(problems)
-    attitude = [column.in_file for column in chosen if column.stem in QUATERNION]
-    values = read_columns(header, [column.in_file for column in chosen], attitude)
+    attitude = [column.place for column in chosen if column.stem in QUATERNION]
+    time = next(column for column in chosen if column.stem == "t")
+    rows = read_columns(header, [column.place for column in chosen], attitude, time.place)
+    values = rows.values
     by_stem = {
         column.stem: values[:, index] * (column.unit.to_si if column.unit else 1.0)
         for index, column in enumerate(chosen)
     }
-    time = next(column for column in chosen if column.stem == "t")
-    _check_times(header, time, values[:, chosen.index(time)], problems)
-    _check_magnitudes(header, chosen, by_stem, problems)
-    quaternions = _attitude(header, by_stem, problems) if attitude else None
+    if rows.comments:
+        told.append(f"{comment_lines(rows.comments)} skipped between the rows")
+    times = sample_times(header, time, values[:, chosen.index(time)], rows, problems, told)
+    if times is not None:
+        by_stem["t"] = times.t
+        _check_times(header, time, times, rows, problems)
+    _check_magnitudes(header, chosen, by_stem, rows, problems)
+    quaternions = _attitude(header, by_stem, rows, problems) if attitude else None
     if problems:
         raise ProfileError(problems)
+    if remarks is not None:
+        remarks += told
     t = by_stem["t"]
     if "arm" in by_stem:
         position = np.column_stack([by_stem["fork"], by_stem["cab"]])
         rate = rates_of_positions(t, position)
         return t, JointCommands(by_stem["arm"], position, rate[:-1], rate[1:])
-    rates = np.column_stack([by_stem[stem] for stem in _RATES])
+    rates = np.column_stack([by_stem[stem] for stem in RATES])
     return t, BodyRates(rates[:-1], middles_of_samples(t, rates), rates[1:], quaternions)
 
 
-def _choose(header: Header, columns: Mapping[str, str], problems: list[Problem]) -> list[_Column]:
-    """Match the columns of the file with what a profile needs."""
-    where = f"{header.label}:1"
-    names = _renamed(header, columns, problems)
-    found: list[_Column] = []
-    for in_file, name in names.items():
-        stem, unit = split_unit(name)
-        if name in QUATERNION:
-            found.append(_Column(name, name, in_file))
-        elif unit is not None and QUANTITIES.get(stem) == unit.quantity:
-            found.append(_Column(stem, name, in_file, unit))
-        elif name not in IGNORED and (name in columns or not columns):
-            problems.append(Problem(where, _unknown(name, stem)))
-    _check_complete(found, names.values(), where, problems)
-    kept = {"t", *(_JOINTS if any(column.stem == "arm" for column in found) else _RATES)}
-    attitude = {column.stem for column in found if column.stem in QUATERNION}
-    if "arm" not in kept and len(attitude) == len(QUATERNION):
-        kept |= attitude
-    return [column for column in found if column.stem in kept]
-
-
-def _renamed(header: Header, columns: Mapping[str, str], problems: list[Problem]) -> dict[str, str]:
-    """Return the name that each column of the file has after renaming."""
-    names = {name: name for name in header.names}
-    for name, in_file in columns.items():
-        where = f"{header.label}: column {plain(name)}={plain(in_file)}"
-        if in_file not in names:
-            hint = did_you_mean(in_file, header.names) or f"; there are {_some(header.names)}"
-            problems.append(Problem(where, f"the file has no column {plain(in_file)}{hint}"))
-        elif list(columns.values()).count(in_file) > 1:
-            problems.append(Problem(where, f"the column {plain(in_file)} is named twice"))
-        elif name != in_file and name in header.names and name not in columns.values():
-            problems.append(Problem(where, f"the file has a column {plain(name)} already"))
-        else:
-            names[in_file] = name
-    return names
-
-
-def _unknown(name: str, stem: str) -> str:
-    quantity = QUANTITIES.get(name) or QUANTITIES.get(stem)
-    if quantity:
-        base = name if name in QUANTITIES else stem
-        units = one_of([f"{base}_{suffix}" for suffix in suffixes(quantity)])
-        kind = {"rate": "a rate", "angle": "an angle", "time": "a time"}[quantity]
-        return (
-            f"the column {plain(name)}: {base} is {kind} and needs its unit in the name: {units} "
-            f"(rename with --column {base}_{suffixes(quantity)[0]}={plain(name)})"
-        )
-    known = [f"{s}_{suffix}" for s, kind in QUANTITIES.items() for suffix in suffixes(kind)]
-    hint = did_you_mean(name, [*known, *QUATERNION])
-    return f"the column {plain(name)} is not known{hint}; name the columns to read with --column"
-
-
-def _check_complete(
-    found: list[_Column], names: object, where: str, problems: list[Problem]
+def _check_times(
+    header: Header, column: Column, times: SampleTimes, rows: Rows, problems: list[Problem]
 ) -> None:
-    stems = [column.stem for column in found]
-    for stem in QUANTITIES:
-        if stems.count(stem) > 1:
-            same = [column.name for column in found if column.stem == stem]
-            problems.append(Problem(where, f"{stem} is given twice: {' and '.join(same)}"))
-    joints, rates = ([stem for stem in kind if stem in stems] for kind in (_JOINTS, _RATES))
-    if joints and rates:
-        what = f"holds both joint commands ({', '.join(joints)}) and body rates"
-        problems.append(Problem(where, f"{what} ({', '.join(rates)}); choose with --column"))
-        return
-    if problems:
-        return  # a column that is not understood may be the one that seems to be missing
-    wanted = ("t", *(_RATES if rates else _JOINTS))
-    missing = [stem for stem in wanted if stem not in stems]
-    if not joints and not rates:
-        what = "has neither joint commands (t_s,arm_rpm,fork_deg,cab_deg) nor body rates"
-        problems.append(Problem(where, f"{what} (t_s,p_rad_s,q_rad_s,r_rad_s)"))
-        return
-    for stem in missing:
-        units = one_of([f"{stem}_{suffix}" for suffix in suffixes(QUANTITIES[stem])])
-        problems.append(Problem(where, f"a column is missing: {units}"))
-
-
-def _check_times(header: Header, column: _Column, times: Floats, problems: list[Problem]) -> None:
-    if len(times) < 2:
+    if len(times.t) < 2:
         what = "has one row; a motion needs two or more"
         problems.append(Problem(header.label, what))
         return
-    in_si = times * column.unit.to_si if column.unit else times
-    late = np.flatnonzero(~(np.diff(in_si) > 0))
+    late = np.flatnonzero(~(np.diff(times.t) > 0))
     name = plain(column.in_file)
     for index in late[:20].tolist():
         problems.append(
             Problem(
-                f"{header.label}:{header.lines + index + 2}",
-                f"{name}: {times[index + 1]:.12g} does not increase (previous {times[index]:.12g})",
+                f"{header.label}:{rows.lines[index + 1]}",
+                f"{name}: {times.written(index + 1)} does not increase "
+                f"(previous {times.written(index)})",
             )
         )
     if len(late) > 20:
@@ -212,8 +114,9 @@ def _check_times(header: Header, column: _Column, times: Floats, problems: list[
 
 def _check_magnitudes(
     header: Header,
-    chosen: list[_Column],
+    chosen: list[Column],
     by_stem: Mapping[str, Floats],
+    rows: Rows,
     problems: list[Problem],
 ) -> None:
     """Say where a command is beyond any machine."""
@@ -222,13 +125,13 @@ def _check_magnitudes(
             continue
         wrong = np.flatnonzero(np.abs(by_stem[column.stem]) > MAX_MAGNITUDE)
         if len(wrong):
-            place = f"{header.label}:{header.lines + int(wrong[0]) + 1}"
+            place = f"{header.label}:{rows.lines[int(wrong[0])]}"
             what = f"is beyond {MAX_MAGNITUDE:g} rad or rad/s ({len(wrong)} such cells)"
             problems.append(Problem(place, f"{plain(column.in_file)}: {what}"))
 
 
 def _attitude(
-    header: Header, by_stem: Mapping[str, Floats], problems: list[Problem]
+    header: Header, by_stem: Mapping[str, Floats], rows: Rows, problems: list[Problem]
 ) -> Floats | None:
     """Return unit quaternions, (n, 4), NaN where none was recorded."""
     recorded = np.column_stack([by_stem[name] for name in QUATERNION])
@@ -238,7 +141,7 @@ def _attitude(
         first = int(wrong[0])
         problems.append(
             Problem(
-                f"{header.label}:{header.lines + first + 1}",
+                f"{header.label}:{rows.lines[first]}",
                 f"q0..q3: the attitude's norm is {norm[first]:.6g}, not 1 "
                 f"({len(wrong)} such row{'s' * (len(wrong) > 1)})",
             )
@@ -247,8 +150,3 @@ def _attitude(
     unit: Floats = recorded / norm[:, None]
     unit[np.isnan(norm)] = np.nan
     return unit
-
-
-def _some(names: list[str], most: int = 12) -> str:
-    words = ", ".join(plain(name) for name in names[:most])
-    return f"{words}, …" if len(names) > most else words

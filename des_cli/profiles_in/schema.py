@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter
@@ -21,6 +22,7 @@ from des_cli.model.profile import (
     Method,
     Objective,
 )
+from des_cli.profiles_in.dialect import parse_decimal, parse_separator
 from des_cli.profiles_in.expression import Expression, ExpressionError, parse_expression
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE, MachineSection
 from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault, measured
@@ -43,6 +45,18 @@ def _parse(text: str) -> Expression:
         return parse_expression(text)
     except ExpressionError as error:
         raise fault(str(error)) from None
+
+
+def _in_words(parse: Callable[[str], str]) -> Callable[[str], str]:
+    """Return a parser whose ValueError is a sentence for the user."""
+
+    def check(text: str) -> str:
+        try:
+            return parse(text)
+        except ValueError as error:
+            raise fault(f"{error}, is {shown(text)}") from None
+
+    return check
 
 
 def kind_of(value: Any) -> str | None:
@@ -164,6 +178,10 @@ class Samples(Section):
     columns: dict[str, Annotated[str, Field(strict=True)]] = Field(
         default_factory=dict, description="name with its unit: name in the file's header"
     )
+    separator: Annotated[str, Field(strict=True), AfterValidator(_in_words(parse_separator))] = (
+        OMITTED
+    )
+    decimal: Annotated[str, Field(strict=True), AfterValidator(_in_words(parse_decimal))] = OMITTED
 
 
 Positive = Annotated[Number, Field(gt=0, le=1e12)]

@@ -36,6 +36,8 @@ def test_a_table_is_told_whatever_was_expected(separator: str, decimal: str, exp
         ("t_s;p (x, rad/s);q_rad_s;r_rad_s\n0;1;2;3\n1;1;2;3\n", Dialect(";", ".")),
         # a broken row does not make another separator likely
         ("t_s,p rad/s,q rad/s\n0,1\n0,1,2\n0,1,2\n", Dialect(",", ".")),
+        # no header at all
+        ("0,25;0,5;1,5\n0,25;0,5;1,5\n", Dialect(";", ",")),
         # the one with more numbers has it; a text is no number
         ("a;b;c\n0,5;1,5;v1.2\n0,6;1,5;0.1\n", Dialect(";", ",")),
         ("a;b;c\n0.5;1.5;1,2,3\n0.6;1.5;0,1\n", Dialect(";", ".")),
