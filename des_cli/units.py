@@ -82,6 +82,15 @@ def split_unit(name: str) -> tuple[str, Unit | None]:
     return name, None
 
 
+def unit_named(suffix: str) -> Unit | None:
+    """Return the unit with a suffix, or None.
+
+    >>> unit_named("rpm").quantity, unit_named("furlong")
+    ('rate', None)
+    """
+    return _BY_SUFFIX.get(suffix)
+
+
 def suffixes(quantity: str) -> tuple[str, ...]:
     """Return every suffix that measures a quantity, in the table's order."""
     return tuple(unit.suffix for unit in UNITS if unit.quantity == quantity)

@@ -171,17 +171,27 @@ BodyRates = measured(
 )
 
 
+Separator = Annotated[
+    str,
+    Field(strict=True, description="what stands between the columns: , ; | tab or space"),
+    AfterValidator(_in_words(parse_separator)),
+]
+Decimal = Annotated[
+    str,
+    Field(strict=True, description="the decimal sign: . or ,"),
+    AfterValidator(_in_words(parse_decimal)),
+]
+
+
 class Samples(Section):
     """Commands recorded in a CSV file beside the profile."""
 
     file: Annotated[str, Field(strict=True, min_length=1)]
     columns: dict[str, Annotated[str, Field(strict=True)]] = Field(
-        default_factory=dict, description="name with its unit: name in the file's header"
+        default_factory=dict, description="our name, with its unit: name in the file's header"
     )
-    separator: Annotated[str, Field(strict=True), AfterValidator(_in_words(parse_separator))] = (
-        OMITTED
-    )
-    decimal: Annotated[str, Field(strict=True), AfterValidator(_in_words(parse_decimal))] = OMITTED
+    separator: Separator = OMITTED
+    decimal: Decimal = OMITTED
 
 
 Positive = Annotated[Number, Field(gt=0, le=1e12)]

@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from des_cli.units import UNITS, Unit
+from des_cli.units import Unit, unit_named
 
-_BY_SUFFIX = {unit.suffix: unit for unit in UNITS}
 _TIMES = {
     "s": "s sec secs second seconds",
     "ms": "ms msec msecs millisecond milliseconds",
@@ -70,7 +69,7 @@ def unit_of(text: str) -> Unit | None:
     word = text.strip().strip("[]()").strip().casefold()
     word = word.replace("°", "deg").replace("º", "deg").replace("μ", "u").replace(" per ", "/")
     word = re.sub(r"\s+", "", _PER_SECOND.sub("/s", word))
-    return _BY_SUFFIX.get(word) or _BY_SUFFIX.get(_ALIASES.get(word, ""))
+    return unit_named(word) or unit_named(_ALIASES.get(word, ""))
 
 
 def read_name(name: str) -> HeaderName:

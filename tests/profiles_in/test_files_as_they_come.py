@@ -102,6 +102,10 @@ AS_THEY_COME: dict[str, tuple[str | bytes, dict[str, Any]]] = {
         ("Zeit,p,q,r,T (°C)\n" + ROWS.replace("\n", ",20\n")).encode("latin-1"),
         {"columns": {"t_s": "Zeit", "p_rad_s": "p", "q_rad_s": "q", "r_rad_s": "r"}},
     ),
+    "Latin-1 in a cell": (
+        HEADER.replace("\n", ",note\n").encode() + ROWS.replace("\n", ",\xfc\n").encode("latin-1"),
+        {},
+    ),
     "names that are numbers": (
         "0,1,2,3\n" + ROWS,
         {"columns": {"t_s": "0", "p_rad_s": "1", "q_rad_s": "2", "r_rad_s": "3"}},
@@ -211,7 +215,8 @@ def test_how_a_file_is_read_belongs_to_its_digest() -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_mutated_files_are_read_or_refused(seed: int) -> None:
+def test_mutated_files_are_read_or_refused(seed: int, tmp_path: Path) -> None:
+    path = tmp_path / "mutated.csv"
     random_ = random.Random(seed)
     pieces = [*"\n\r\t ,;|\"'#%/:.-+e0159[]()°\ufeff\x1f", "nan", "T12:00", "s,rad/s\n", "\xa0"]
     files = list(AS_THEY_COME.values())
@@ -219,13 +224,14 @@ def test_mutated_files_are_read_or_refused(seed: int) -> None:
     for _ in range(100):
         text, how = random_.choice(files)
         data = bytearray(text if isinstance(text, bytes) else text.encode())
-        for _ in range(random_.randint(1, 4)):
+        for _ in range(random_.randint(1, 2)):
             at = random_.randrange(len(data) + 1)
-            data[at : at + random_.randint(0, 3)] = random_.choice(pieces).encode(
-                random_.choice(["utf-8", "utf-8", "utf-16-le"])
+            data[at : at + random_.randint(0, 2)] = random_.choice(pieces).encode(
+                random_.choice(["utf-8"] * 19 + ["utf-16-le"])
             )
         try:
-            profile = load(bytes(data), **how)
+            path.write_bytes(data)
+            profile = load_profile(path, **how)
         except ProfileError as error:
             outcomes.add("refused")
             lines = [str(problem) for problem in error.problems]
