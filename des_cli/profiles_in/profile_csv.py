@@ -9,7 +9,8 @@ import numpy as np
 from des_cli.errors import Problem, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, JointCommands
-from des_cli.profiles_in.columns import QUATERNION, RATES, Column, choose_columns
+from des_cli.profiles_in.column_kinds import QUATERNION, RATES, Column
+from des_cli.profiles_in.columns import choose_columns
 from des_cli.profiles_in.csv_header import Header, comment_lines, split_header
 from des_cli.profiles_in.csv_table import Rows, read_columns
 from des_cli.profiles_in.positions import middles_of_samples, rates_of_positions

@@ -10,7 +10,7 @@ import numpy as np
 from des_cli.errors import Problem
 from des_cli.model.arrays import Floats
 from des_cli.profiles_in.clock import ClockError, is_clock, seconds_of
-from des_cli.profiles_in.columns import Column
+from des_cli.profiles_in.column_kinds import Column
 from des_cli.profiles_in.csv_header import Header
 from des_cli.profiles_in.csv_table import Rows, column_text
 from des_cli.profiles_in.wording import plain

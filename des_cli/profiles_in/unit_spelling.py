@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from des_cli.profiles_in.column_kinds import QUANTITIES
 from des_cli.units import Unit, unit_named
 
 _TIMES = {
@@ -34,8 +35,7 @@ def _aliases() -> dict[str, str]:
 
 
 _ALIASES = _aliases()
-_STEMS = {name: name for name in ("t", "p", "q", "r", "arm", "fork", "cab")}
-_STEMS |= {"time": "t", "timestamp": "t"}
+_STEMS = {stem: stem for stem in QUANTITIES} | {"time": "t", "timestamp": "t"}
 _PER_SECOND = re.compile(r"[\s.*·⋅]*\bs\s*(\^?\s*\(?[-−]\s*1\)?|⁻¹)$|(?<=g|d)s(\^-1|⁻¹)$")
 _BRACKETED = re.compile(r"(?P<stem>.*?)[\s_]*[\[(]\s*(?P<unit>[^\[\]()]*?)\s*[\])]")
 

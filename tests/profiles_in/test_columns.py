@@ -5,7 +5,8 @@ import re
 import pytest
 
 from des_cli.errors import Problem
-from des_cli.profiles_in.columns import JOINTS, RATES, choose_columns
+from des_cli.profiles_in.column_kinds import JOINTS, RATES
+from des_cli.profiles_in.columns import choose_columns
 from des_cli.profiles_in.csv_header import split_header
 
 RADIANS = "p_rad_s,q_rad_s,r_rad_s"

@@ -190,13 +190,21 @@ def test_an_attitude_that_is_no_rotation_is_refused() -> None:
     )
 )
 def test_the_fast_and_the_careful_reader_read_the_same_doubles(rows: list[list[float]]) -> None:
-    plain = "a,b,c\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows)
+    text = [["a", "b", "c"], *[[*map(repr, row)] for row in rows]]
+    plain = "".join(",".join(row) + "\n" for row in text)
+    spreadsheet = plain.replace(",", ";").replace(".", ",")
     stream = io.StringIO()
-    csv.writer(stream, quoting=csv.QUOTE_ALL).writerows([["a", "b", "c"], *rows])
-    fast = read_columns(split_header(plain, "x"), [2, 0]).values
-    careful = read_columns(split_header(stream.getvalue(), "x"), [2, 0]).values
-    np.testing.assert_array_equal(fast, np.array(rows)[:, [2, 0]])
-    np.testing.assert_array_equal(careful, fast)
+    csv.writer(stream, quoting=csv.QUOTE_ALL).writerows(text)
+    expected = np.array(rows)[:, [2, 0]]
+    for each, separator, decimal in (
+        (plain, ",", "."),
+        (plain.replace(",", " "), " ", "."),
+        (spreadsheet, ";", ","),
+        (stream.getvalue(), ",", "."),
+        (spreadsheet.replace("\n", ";\n"), ";", ","),
+    ):
+        header = split_header(each, "x", separator, decimal)
+        np.testing.assert_array_equal(read_columns(header, [2, 0]).values, expected)
 
 
 @settings(max_examples=150, deadline=None)
