@@ -36,6 +36,9 @@ def _aliases() -> dict[str, str]:
 
 _ALIASES = _aliases()
 _STEMS = {stem: stem for stem in QUANTITIES} | {"time": "t", "timestamp": "t"}
+_LONGEST = 200
+"""Characters up to which a name is taken apart; that takes their square in time."""
+
 _PER_SECOND = re.compile(r"[\s.*·⋅]*\bs\s*(\^?\s*\(?[-−]\s*1\)?|⁻¹)$|(?<=g|d)s(\^-1|⁻¹)$")
 _BRACKETED = re.compile(r"(?P<stem>.*?)[\s_]*[\[(]\s*(?P<unit>[^\[\]()]*?)\s*[\])]")
 
@@ -66,6 +69,8 @@ def unit_of(text: str) -> Unit | None:
     >>> unit_of("°/s").suffix, unit_of("[rad s^-1]").suffix, unit_of("mrad/s")
     ('deg_s', 'rad_s', None)
     """
+    if len(text) > _LONGEST:
+        return None
     word = text.strip().strip("[]()").strip().casefold()
     word = word.replace("°", "deg").replace("º", "deg").replace("μ", "u").replace(" per ", "/")
     word = re.sub(r"\s+", "", _PER_SECOND.sub("/s", word))
@@ -80,6 +85,8 @@ def read_name(name: str) -> HeaderName:
     >>> read_name("p_mrad_s").unit_text, read_name("gyro_x_dps").unit.suffix
     ('mrad_s', 'deg_s')
     """
+    if len(name) > _LONGEST:
+        return HeaderName(name)
     bracketed = _BRACKETED.fullmatch(name)
     if bracketed:
         return HeaderName(_stem(bracketed["stem"]), unit_of(bracketed["unit"]), bracketed["unit"])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from des_cli.profiles_in.unit_spelling import read_name, unit_of
+from des_cli.profiles_in.unit_spelling import HeaderName, read_name, unit_of
 from des_cli.units import UNITS
 
 
@@ -57,6 +57,12 @@ def test_a_unit_that_is_not_known_is_not_taken_for_a_part_of_it(name: str) -> No
 @pytest.mark.parametrize("name", ["t", "P", "q0", "quality", "gyro", "Temp (°C)", "p_"])
 def test_names_without_a_unit(name: str) -> None:
     assert read_name(name).unit is None
+
+
+def test_a_name_that_no_person_wrote_is_left_whole() -> None:
+    name = "p " + "_ " * 60_000 + "(deg/s)"
+    assert read_name(name) == HeaderName(name)
+    assert unit_of(" " * 60_000 + "s") is None
 
 
 def test_every_unit_of_the_table_is_read_as_itself_in_any_case() -> None:
