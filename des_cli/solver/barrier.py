@@ -37,6 +37,14 @@ import numpy as np
 from des_cli.model.arrays import Floats
 from des_cli.solver.feasible_program import E, Expansion, Program, System, Values
 
+STILL, ROUNDED = 12, 10.0
+"""Full steps that leave the cost as it is, from which a search has come to rest, and by how
+much of the tolerance its first-order conditions may then be off: multipliers of limits that
+hold almost everywhere cancel, and what is left of them is rounding."""
+
+ROUNDING = 1e-12
+"""Relative change of a cost that is the rounding of a sum over thousands of points."""
+
 BoundaryStatus: TypeAlias = Literal["converged", "iteration-limit", "stalled"]
 
 BUDGET_WEIGHT = 0.1
@@ -193,6 +201,18 @@ class _Search(Generic[E]):
         self.steps: list[Step] = []
         self.length = 0.0
 
+    def _at_rounding(self, gap: float, residual: float) -> bool:
+        """Whether nothing moves any more: rounding is all that the conditions are off by."""
+        options, last = self.options, self.steps[-STILL:]
+        costs = [step.cost for step in last]
+        return (
+            len(last) == STILL
+            and gap <= 1.0001 * options.gap
+            and residual <= ROUNDED * options.tolerance
+            and min(step.length for step in last) == 1.0
+            and max(costs) - min(costs) <= ROUNDING * max(abs(costs[-1]), 1.0)
+        )
+
     def run(self) -> Outcome:
         options = self.options
         status: BoundaryStatus = "iteration-limit"
@@ -208,6 +228,9 @@ class _Search(Generic[E]):
                 status = "converged"
                 break
             if options.stop_early is not None and options.stop_early(self.at.budgets):
+                status = "converged"
+                break
+            if self._at_rounding(gap, residual):
                 status = "converged"
                 break
             if number == options.max_iterations:

@@ -95,8 +95,7 @@ def keeps_budgets(claim: Claim, felt: Felt) -> bool:
 
 def spent_budgets(claim: Claim) -> list[Budget]:
     """Return the budgets on integrals that may hold the motion: those that are spent."""
-    rough = claim.reduction.allow_change is not None or _torn(claim.asked)
-    share = SPENT_OF_TORN if rough else SPENT
+    share = SPENT_OF_TORN if claim.rough or _torn(claim.asked) else SPENT
     return [
         budget
         for budget in claim.reduction.budget

@@ -73,6 +73,11 @@ class Claim:
         """Whether the motion is to be inside the machine's limits."""
         return self.reduction.limits == "enforce"
 
+    @property
+    def rough(self) -> bool:
+        """Whether the record was so rough that its user allowed it to be changed."""
+        return self.reduction.allow_change is not None
+
     @cached_property
     def weight(self) -> Floats:
         """Weights of the trapezoidal rule on the states of a motion, (2 (n - 1),) [s]."""

@@ -9,7 +9,7 @@ start. They stay clear of every limit that may hold the motion.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +46,7 @@ EACH = 4
 
 SAMPLED = 256
 """Intervals of a window that are evaluated, at the most: of a longer one every second,
-third, and so on. What is integrated over it is smooth."""
+third, and so on. What is integrated over it is smooth, unless the record is rough: then all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,18 +62,21 @@ class Direction:
         Change of the rate at its samples, largest magnitude one [rad/s].
     angle : (k,) array
         Change of the angle, the integral of the rate's [rad].
+    most : int
+        Intervals that are evaluated, at the most.
     """
 
     joint: int
     first: int
     rate: Floats
     angle: Floats
+    most: int = SAMPLED
 
     @property
     def sampled(self) -> NDArray[np.intp]:
         """Intervals that are evaluated, as indices into the window."""
         count = len(self.rate) - 1
-        return np.arange(0, count, max(1, -(-count // SAMPLED)))
+        return np.arange(0, count, max(1, -(-count // self.most)))
 
 
 def find_directions(claim: Claim) -> list[Direction]:
@@ -102,7 +105,7 @@ def find_directions(claim: Claim) -> list[Direction]:
                 found.append(_direction(t, j, "arrive", *window))
             if reduction.ends != "match-both":
                 found.append(_direction(t, j, "rise", *window))
-    return found
+    return [replace(each, most=len(t)) for each in found] if claim.rough else found
 
 
 def coarseness(claim: Claim) -> float:

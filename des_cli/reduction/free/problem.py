@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import get_args
 
 import numpy as np
 
@@ -22,6 +21,8 @@ from des_cli.model.metric import Budget, MetricKey
 from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
+from des_cli.model.response import Response
+from des_cli.reduction.free.asked import Asked
 from des_cli.reduction.free.ground_cross import GroundCross
 from des_cli.reduction.free.limit_rows import LimitRows, Tie
 from des_cli.reduction.free.local_bounds import (
@@ -32,7 +33,7 @@ from des_cli.reduction.free.local_bounds import (
     OnsetBound,
 )
 from des_cli.reduction.free.program import SEAT_VARIABLES, FreeSeat, MotionProblem
-from des_cli.reduction.free.terms import JointBudget, Quantity, Term, value_of
+from des_cli.reduction.free.terms import JointBudget, Quantity, Term
 from des_cli.reduction.free.windows import JOINTS as COMPONENTS
 from des_cli.reduction.free.windows import Windows
 from des_cli.reduction.reference import sample_motion, sample_sides
@@ -89,6 +90,8 @@ class FreeTask:
         Share of each bound on what the occupant gets that is left to the table.
     shortfall : Shortfall, optional
         What is asked for beyond the reference.
+    response : Response, optional
+        As asked for, where it is known already.
     """
 
     machine: Machine
@@ -99,6 +102,7 @@ class FreeTask:
     limits: tuple[JointLimits, ...]
     room: float = 0.0
     shortfall: Shortfall | None = None
+    response: Response | None = None
 
     @classmethod
     def of(
@@ -119,7 +123,18 @@ class FreeTask:
             target=reference if target is None else target,
             limits=limits,
             shortfall=shortfall,
-        )
+        ).with_response()
+
+    def asked(self) -> Response:
+        """Return what is asked of the seat, at both ends of every interval."""
+        if self.response is not None:
+            return self.response
+        made = respond_on(self.chain, self.machine.gravity, self.reference)
+        return with_shortfall(made, self.shortfall)
+
+    def with_response(self) -> FreeTask:
+        """Return the task with what it would evaluate for every grid."""
+        return replace(self, response=self.asked())
 
     @property
     def chain(self) -> Chain:
@@ -173,8 +188,10 @@ def pose_motion(
     times = windows.times()
     angle, rate, acceleration = sample_motion(task.reference, times)
     seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
-    asked = _asked(seat, task, times)
-    measures = _Measures(grid, base, angle, asked, cross_coupling(task, grid))
+    asked = _asked(seat, task, windows)
+    # Of a rough record no motion makes the cross-coupling: costs are relative to the base's.
+    size = _energy(task, grid, *_along(grid, base)) if asked.rough else cross_coupling(task, grid)
+    measures = _Measures(grid, base, angle, asked, size)
     acceleration_limit = np.array([limit.acceleration for limit in task.machine.limits])
     unit = np.where(np.isfinite(acceleration_limit), acceleration_limit, UNIT_ACCELERATION)
     return MotionProblem(
@@ -203,6 +220,17 @@ def cross_coupling(task: FreeTask, grid: SplineGrid) -> float:
     """Return the reference's ``int c' R1 c dt``, which the cost is relative to."""
     times = Windows(grid, SEAT_VARIABLES).times()
     angle, rate, _ = sample_motion(task.reference, times)
+    return _energy(task, grid, angle, rate)
+
+
+def _along(grid: SplineGrid, control: Floats) -> tuple[Floats, Floats]:
+    """Return a spline's angles and rates at the points of its grid, (p, 3) each."""
+    times = Windows(grid, SEAT_VARIABLES).times()
+    return grid.values(control, times), grid.values(control, times, 1)
+
+
+def _energy(task: FreeTask, grid: SplineGrid, angle: Floats, rate: Floats) -> float:
+    """Return ``int c' R1 c dt`` of angles and rates at the points."""
     c = coriolis(task.chain, angle, rate, "report" if in_ground_axes(task.reduction) else "seat")
     return float(0.5 * grid.step * np.sum((c @ _root(task.reduction.r1)) ** 2))
 
@@ -213,19 +241,12 @@ def in_ground_axes(reduction: Reduction) -> bool:
     return reduction.axes == "report" and not isotropic
 
 
-def _asked(seat: SeatMotion, task: FreeTask, times: Floats) -> dict[Quantity, Floats]:
-    """Return what is asked of the seat at points, (3, p) each, by the quantities of terms."""
-    asked = {quantity: value_of(seat, quantity) for quantity in get_args(Quantity)}
-    missing = task.shortfall
-    if missing is not None:
-        per_g = PILOT_SIGNS * STANDARD_GRAVITY_M_S2
-        for quantity, sides in (
-            ("rate", missing.seat_rate),
-            ("acceleration", missing.seat_angular_acceleration),
-            ("force", missing.seat_g * per_g),
-        ):
-            asked[quantity] = asked[quantity] + sample_sides(task.reference.t, sides, times).T
-    return asked
+def _asked(seat: SeatMotion, task: FreeTask, windows: Windows) -> Asked:
+    """Return what is asked of the seat: at the points, or of a rough record by its samples."""
+    projected = Asked.projected(task.asked(), task.reference.t, windows)
+    if projected.rough:
+        return projected
+    return Asked.at_points(seat, task.reference, task.shortfall, windows.times())
 
 
 class _Measures:
@@ -236,7 +257,7 @@ class _Measures:
         grid: SplineGrid,
         base: Floats,
         angle: Floats,
-        asked: Mapping[Quantity, Floats],
+        asked: Asked,
         size: float,
     ) -> None:
         self.grid, self.base, self.angle, self.asked = grid, base, angle, asked
@@ -249,10 +270,10 @@ class _Measures:
         if reduction.objective != "felt" and not in_ground_axes(reduction):
             terms.append(Term("cross", self._cross_root(reduction)))
         if reduction.objective != "coriolis":
-            cross = self.asked["cross"]
+            cross = self.asked.values["cross"]
             share = BLEND if reduction.objective == "blend" else 1.0
             isotropic = np.sqrt(share * np.trace(reduction.r1) / 3.0 * self.weight / self.size)
-            target = self.asked["acceleration"] - cross
+            target = self.asked.values["acceleration"] - cross
             terms.append(Term("acceleration", isotropic * np.eye(3), target))
         return terms
 
@@ -290,10 +311,12 @@ class _Measures:
 
     def _per_size(self, quantity: Quantity) -> float:
         """Return one over the norm of a quantity of the reference."""
-        return 1.0 / max(float(np.linalg.norm(self.asked[quantity])), 1e-150)
+        return 1.0 / max(float(np.sqrt(self.asked.square[quantity])), 1e-150)
 
     def _term(self, quantity: Quantity, scale: float) -> Term:
-        return Term(quantity, scale * np.eye(3), self.asked[quantity])
+        asked = self.asked
+        floor = scale**2 * asked.floor[quantity]
+        return Term(quantity, scale * np.eye(3), asked.values[quantity], floor)
 
     def _joints(self, most: float) -> JointBudget:
         windows = Windows(self.grid, tuple((0, joint) for joint in range(COMPONENTS)))
@@ -314,10 +337,7 @@ def _point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) -
     """Return a budget that bounds every point."""
     if budget.metric == "attitude_error_max_deg":
         return _attitude_bound(task, times, angle, budget.most)
-    response = with_shortfall(
-        respond_on(task.chain, task.machine.gravity, task.reference), task.shortfall
-    )
-    peak = np.max(np.linalg.norm(response.seat_angular_acceleration, axis=-1))
+    peak = np.max(np.linalg.norm(task.asked().seat_angular_acceleration, axis=-1))
     return NormBound("acceleration", budget.most * max(float(peak), 1e-150))
 
 

@@ -167,7 +167,7 @@ class MotionProgram:
         """Evaluate cost, budgets and local bounds."""
         problem, control = self.problem, self.control(x)
         forms, _ = self._forms(x)
-        cost, budgets = 0.0, np.zeros(len(problem.budgets))
+        cost, budgets = 0.0, np.array([budget.floor for budget in problem.budgets])
         local: list[list[Floats]] = [[] for _ in problem.local]
         for chunk, (first, last) in enumerate(self.chunks):
             seat = forms.at(self._base[chunk] + self.windows.gather(control, first, last))
@@ -193,6 +193,7 @@ class MotionProgram:
         forms, turns = self._forms(x)
         total = MotionExpansion.zero(self, len(problem.budgets))
         total.band.data += self._smooth.data
+        total.budgets += [budget.floor for budget in problem.budgets]
         found: list[list[Floats]] = [[] for _ in problem.local]
         for chunk, (first, last) in enumerate(self.chunks):
             seat = forms.at(self._base[chunk] + self.windows.gather(control, first, last))

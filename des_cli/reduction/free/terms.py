@@ -33,11 +33,14 @@ class Term:
         A square root of the weight: the term is ``sum |root (value - reference)|^2``.
     reference : (3, p) array, optional
         At all points; None for zero.
+    floor : float
+        What the term has beside the points' squares, whatever the motion.
     """
 
     quantity: Quantity
     root: Floats
     reference: Floats | None = None
+    floor: float = 0.0
 
     @cached_property
     def _diagonal(self) -> Floats | None:
@@ -130,6 +133,7 @@ class JointBudget:
 
     scale: float
     off: Floats
+    floor: float = 0.0
 
 
 def square(residual: Floats) -> float:
