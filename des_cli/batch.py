@@ -122,6 +122,8 @@ def load_job(job: Job) -> Profile:
         columns=dict(job.columns) or None,
         stdin=job.stdin,
         part=job.part,
+        separator=job.separator,
+        decimal=job.decimal,
     )
 
 
@@ -136,7 +138,12 @@ def split_jobs(jobs: Iterable[Job]) -> list[Job]:
     for job in jobs:
         try:
             parts = count_parts(
-                job.source, settings=job.settings, columns=dict(job.columns), stdin=job.stdin
+                job.source,
+                settings=job.settings,
+                columns=dict(job.columns),
+                stdin=job.stdin,
+                separator=job.separator,
+                decimal=job.decimal,
             )
         except (DesError, OSError):
             parts = 1

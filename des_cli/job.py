@@ -31,6 +31,8 @@ class Job:
         Overrides, ``reduction.r2=0.2``.
     columns : mapping of str to str
         Names of a CSV's columns: ours to the file's.
+    separator, decimal : str, optional
+        How a CSV is written.
     stdin : bytes, optional
         What ``-`` stands for.
     part : int, optional
@@ -53,6 +55,8 @@ class Job:
     source: str
     settings: tuple[str, ...] = ()
     columns: Mapping[str, str] = field(default_factory=dict)
+    separator: str | None = None
+    decimal: str | None = None
     stdin: bytes | None = None
     part: int | None = None
     out: str = "runs"

@@ -42,6 +42,7 @@ UNITS: tuple[Unit, ...] = (
     Unit("s", "time", 1.0),
     Unit("ms", "time", 1e-3),
     Unit("us", "time", 1e-6),
+    Unit("ns", "time", 1e-9),
     Unit("min", "time", 60.0),
     Unit("rad", "angle", 1.0),
     Unit("deg", "angle", math.pi / 180.0),
@@ -79,6 +80,15 @@ def split_unit(name: str) -> tuple[str, Unit | None]:
         if unit is not None:
             return "_".join(parts[:start]), unit
     return name, None
+
+
+def unit_named(suffix: str) -> Unit | None:
+    """Return the unit with a suffix, or None.
+
+    >>> unit_named("rpm").quantity, unit_named("furlong")
+    ('rate', None)
+    """
+    return _BY_SUFFIX.get(suffix)
 
 
 def suffixes(quantity: str) -> tuple[str, ...]:

@@ -51,6 +51,8 @@ def kinematics(
     machine: str | None,
     settings: tuple[str, ...],
     columns: dict[str, str],
+    separator: str | None,
+    decimal: str | None,
     form: str | None,
     **numbers: float | None,
 ) -> None:
@@ -69,10 +71,17 @@ def kinematics(
         raise click.UsageError("parquet is not for a terminal: redirect stdout.")
     if profile is not None:
         _refuse_beside_profile(given)
-        settings = (*machine_settings(machine), *settings)
-        write_data(_motion(profile, settings, columns, form))
+        source = Job(
+            profile,
+            settings=(*machine_settings(machine), *settings),
+            columns=columns,
+            separator=separator,
+            decimal=decimal,
+            stdin=read_stdin((profile,)) if profile == STANDARD_STREAM else None,
+        )
+        write_data(_motion(source, form))
         return
-    if settings or columns:
+    if settings or columns or separator or decimal:
         raise click.UsageError("--set, --column and the like change a PROFILE, and none is given.")
     write_data(_state(in_si(given), machine or "des", form))
 
@@ -103,9 +112,7 @@ def _state(si: Mapping[tuple[str, str], float], choice: str, form: str) -> bytes
     return encode_state(report, cast(TableFormat, form), about)
 
 
-def _motion(
-    source: str, settings: tuple[str, ...], columns: Mapping[str, str], form: str
-) -> bytes | str:
+def _motion(source: Job, form: str) -> bytes | str:
     """Return the kinematics of a profile's desired motion."""
     from des_cli.batch import load_job
     from des_cli.cli.state_text import motion_text
@@ -113,8 +120,7 @@ def _motion(
     from des_cli.runs_out.state_tables import encode_states
     from des_cli.study.state import report_motion
 
-    stdin = read_stdin((source,)) if source == STANDARD_STREAM else None
-    profile = load_job(Job(source, settings=settings, columns=columns, stdin=stdin))
+    profile = load_job(source)
     motion = find_desired(profile).motion
     t: Floats = motion.t
     report = report_motion(profile.machine, profile.seat, motion)

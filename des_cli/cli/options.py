@@ -67,7 +67,7 @@ def profile_argument(command: F) -> F:
 
 
 def setting_options(command: F) -> F:
-    """Add ``--set``, ``--column``, ``--gap`` and what conditions a record: how a profile is read.
+    """Add the options that change how a profile is read, such as ``--set`` and ``--trim``.
 
     ``--gap`` comes to the command as a setting; its own value is not passed.
     """
@@ -96,7 +96,19 @@ def setting_options(command: F) -> F:
         help="Where samples are missing: refuse, interpolate, or make a profile of each stretch.  "
         "[default: bridge up to 0.5 s]",
     )
-    return settings(columns(gap(conditioning_options(command))))
+    separator = click.option(
+        "--separator",
+        metavar="SIGN",
+        callback=_read_separator,
+        help="What stands between the columns of a CSV profile: ',', ';', '|', tab or space.",
+    )
+    decimal = click.option(
+        "--decimal",
+        metavar="SIGN",
+        callback=_read_decimal,
+        help="The decimal sign of a CSV profile: '.' or ','.",
+    )
+    return settings(columns(separator(decimal(gap(conditioning_options(command))))))
 
 
 def machine_option(command: F) -> F:
@@ -374,6 +386,29 @@ def _read_columns(
             raise click.BadParameter(f"{name!r} is given twice.")
         columns[name] = header
     return columns
+
+
+def _read_separator(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> str | None:
+    from des_cli.profiles_in.dialect import parse_separator
+
+    return None if value is None else _in_words(parse_separator, value)
+
+
+def _read_decimal(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> str | None:
+    from des_cli.profiles_in.dialect import parse_decimal
+
+    return None if value is None else _in_words(parse_decimal, value)
+
+
+def _in_words(parse: Callable[[str], str], value: str) -> str:
+    try:
+        return parse(value)
+    except ValueError as error:
+        raise click.BadParameter(f"{value!r}: {error}.") from None
 
 
 def _console(context: click.Context) -> Console:

@@ -109,6 +109,8 @@ def sweep(
     machine: str | None,
     settings: tuple[str, ...],
     columns: dict[str, str],
+    separator: str | None,
+    decimal: str | None,
     out: str | None,
     table_format: str | None,
     plot: str | None,
@@ -135,6 +137,8 @@ def sweep(
         profile,
         settings=(*machine_settings(machine), *settings),
         columns=columns,
+        separator=separator,
+        decimal=decimal,
         stdin=read_stdin((profile,)) if profile == STANDARD_STREAM else None,
     )
     points = _plan(source, reduction, swept, r2s or (), controls)

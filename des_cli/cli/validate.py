@@ -54,6 +54,8 @@ def validate(
     machine: str | None,
     settings: tuple[str, ...],
     columns: dict[str, str],
+    separator: str | None,
+    decimal: str | None,
     form: str,
     **reduction: Any,
 ) -> ExitCode:
@@ -74,6 +76,8 @@ def validate(
                 source,
                 settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
                 columns=columns,
+                separator=separator,
+                decimal=decimal,
                 stdin=stdin if source == STANDARD_STREAM else None,
             )
             for source in profiles

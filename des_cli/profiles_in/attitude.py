@@ -15,21 +15,11 @@ from des_cli.errors import Problem, ProfileError
 from des_cli.kinematics.attitude_rates import LARGEST_TURN, rates_of_attitude, turns_between
 from des_cli.model.arrays import Floats, Indices
 from des_cli.model.profile import BodyRates
+from des_cli.profiles_in.column_kinds import EULER, QUATERNION
 from des_cli.profiles_in.conditioning_schema import EULER_ORDERS, EulerOrder
-from des_cli.profiles_in.csv_table import Header
+from des_cli.profiles_in.csv_header import Header
+from des_cli.profiles_in.gaps import Place
 from des_cli.profiles_in.wording import one_of
-
-QUATERNION = ("q0", "q1", "q2", "q3")
-"""Recorded attitude (w, x, y, z), without a unit."""
-
-ALIASES: Mapping[str, str] = {
-    **dict(zip(("qw", "qx", "qy", "qz"), QUATERNION, strict=True)),
-    **dict(zip(QUATERNION, QUATERNION, strict=True)),
-}
-"""Names of the quaternion's columns."""
-
-EULER = ("roll", "pitch", "yaw")
-"""Recorded angles about the body's x, y and z, in one of `EULER_ORDERS`."""
 
 _UNIT_NORM = 0.01
 """How far a recorded attitude's norm may be from 1, as printing rounds it."""
@@ -39,7 +29,7 @@ def with_quaternions(
     record: Mapping[str, Floats],
     euler: EulerOrder | None,
     header: Header,
-    rows: Indices,
+    line: Place,
     problems: list[Problem],
 ) -> dict[str, Floats]:
     """Return a record whose attitude, if it has one, is unit quaternions.
@@ -53,20 +43,20 @@ def with_quaternions(
         The order of `EULER`.
     header : Header
         Of the file, for places.
-    rows : (n,) array
-        Which row of the file each of the record's is.
+    line : callable
+        From a row of the record to its line.
     problems : list of Problem
         Takes what is wrong.
     """
     rest = {stem: column for stem, column in record.items() if stem not in EULER}
     if EULER[0] in record:
         if euler is None:
-            problems.append(Problem(f"{header.label}:1", _without_order()))
+            problems.append(Problem(header.where, _without_order()))
             return rest
         attitude = _of_euler(np.column_stack([record[stem] for stem in EULER]), euler)
     elif QUATERNION[0] in record:
         recorded = np.column_stack([record[name] for name in QUATERNION])
-        attitude = _normalised(recorded, header, rows, problems)
+        attitude = _normalised(recorded, header.label, line, problems)
     else:
         return rest
     return rest | {stem: attitude[:, k] for k, stem in enumerate(QUATERNION)}
@@ -93,14 +83,14 @@ def _of_euler(angles: Floats, order: EulerOrder) -> Floats:
     return found
 
 
-def _normalised(recorded: Floats, header: Header, rows: Indices, problems: list[Problem]) -> Floats:
+def _normalised(recorded: Floats, label: str, line: Place, problems: list[Problem]) -> Floats:
     norm = np.sqrt(np.sum(recorded**2, axis=1))
     wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_NORM)
     if len(wrong):
         first = int(wrong[0])
         problems.append(
             Problem(
-                f"{header.label}:{header.lines + int(rows[first]) + 1}",
+                f"{label}:{line(first)}",
                 f"q0..q3: the attitude's norm is {norm[first]:.6g}, not 1 "
                 f"({len(wrong)} such row{'s' * (len(wrong) > 1)})",
             )

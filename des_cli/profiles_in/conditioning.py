@@ -17,13 +17,12 @@ from des_cli.errors import Problem, ProfileError
 from des_cli.kinematics.attitude import quaternion_product
 from des_cli.kinematics.smoothing import why_not_smooth
 from des_cli.model.arrays import Floats, Indices
-from des_cli.profiles_in.attitude import QUATERNION, interpolate_attitude
+from des_cli.profiles_in.attitude import interpolate_attitude
+from des_cli.profiles_in.column_kinds import QUATERNION, RATES
 from des_cli.profiles_in.conditioning_schema import EulerOrder
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.g_schema import G_STEMS
 from des_cli.profiles_in.sampling import MAX_SAMPLES
-
-RATES = ("p", "q", "r")
 
 OF_SAMPLES = ("gap", "trim", "axes", "resample")
 """Keys that only recorded samples have a use for."""

@@ -11,182 +11,260 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from des_cli.errors import Problem, ProfileError
 from des_cli.model.arrays import Floats
+from des_cli.profiles_in.clock import is_clock
+from des_cli.profiles_in.csv_header import Header, is_comment
 from des_cli.profiles_in.sampling import MAX_SAMPLES
 from des_cli.profiles_in.wording import plain, shown
 
-_NUMBER = re.compile(r"\s*[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?\s*", re.ASCII)
 _WORTH_TELLING = 30
-"""Rows described before the rest is only counted."""
+"""Kinds of wrong rows described before the rest is only counted."""
 
 
 @dataclass(frozen=True)
-class Header:
-    """The first row of a CSV file.
+class Rows:
+    """The numbers of a file's rows.
 
     Parameters
     ----------
-    label : str
-        What messages call the file.
-    names : list of str
-        Without the blanks around them.
-    text : str
-        The rows below it.
-    lines : int
-        Number of lines that the header takes.
+    values : (n, k) array
+        A column each, n >= 1.
+    lines : sequence of int
+        The line of the file on which each row starts.
+    comments : int
+        Comment lines that were passed over between the rows.
     """
 
-    label: str
-    names: list[str]
-    text: str
-    lines: int
+    values: Floats
+    lines: Sequence[int]
+    comments: int = 0
 
 
-def split_header(text: str, label: str) -> Header:
-    """Split off the header of a CSV file.
-
-    Raises
-    ------
-    ProfileError
-        If the file is empty, or a name is empty or stands twice.
-    """
-    stream = io.StringIO(text, newline="")
-    reader = csv.reader(stream, strict=True)
-    try:
-        names = [name.strip() for name in next(reader, [])]
-    except csv.Error as error:
-        raise ProfileError([Problem(f"{label}:1", f"is not a CSV header: {error}")]) from None
-    if not any(names):
-        raise ProfileError([Problem(label, "is empty: a header such as t_s,arm_rpm,… is missing")])
-    problems = [
-        Problem(f"{label}:1", f"column {index + 1} has no name")
-        for index, name in enumerate(names)
-        if not name
-    ]
-    problems += [
-        Problem(f"{label}:1", f"the column {plain(name)} stands {names.count(name)} times")
-        for name in dict.fromkeys(names)
-        if name and names.count(name) > 1
-    ]
-    if problems:
-        raise ProfileError(problems)
-    rest = text[stream.tell() :]
-    return Header(label, names, rest, reader.line_num)
-
-
-def read_columns(header: Header, wanted: Sequence[str], may_lack: Sequence[str] = ()) -> Floats:
+def read_columns(
+    header: Header,
+    places: Sequence[int],
+    may_lack: Sequence[int] = (),
+    clock: int | None = None,
+) -> Rows:
     """Read the numbers of some columns.
 
     Parameters
     ----------
     header : Header
-    wanted : sequence of str
-        Names of the file's columns.
-    may_lack : sequence of str
+    places : sequence of int
+        Which columns of the file.
+    may_lack : sequence of int
         Those of them whose cells may be empty; they become not a number.
+    clock : int, optional
+        The one of them that may hold times of day or dates; they become not a
+        number, and `column_text` has them.
 
     Returns
     -------
-    (n, k) array
-        A column each, n >= 1.
+    Rows
 
     Raises
     ------
     ProfileError
         With every row that is not as long as the header or holds something
-        else than finite numbers.
+        else than finite numbers; what is wrong alike on many rows is one line.
     """
-    places = [header.names.index(name) for name in wanted]
-    values = _read_fast(header, places)
-    if values is None:
-        values = _read_slowly(header, places, [name in may_lack for name in wanted])
-    return values
+    rows = _read_fast(header, places)
+    if rows is None:
+        rows = _read_slowly(header, places, [place in may_lack for place in places], clock)
+    return rows
 
 
-def _read_fast(header: Header, places: Sequence[int]) -> Floats | None:
+def column_text(header: Header, place: int) -> list[str]:
+    """Return the cells of a column of a file that `read_columns` has read, as they are."""
+    return [cells[place] for _, cells in _Records(header)]
+
+
+def _read_fast(header: Header, places: Sequence[int]) -> Rows | None:
     """Read with numpy's C reader, or return None where it is not sure to be right."""
     body = header.text.rstrip("\r\n")
+    separator, decimal = header.dialect.separator, header.dialect.decimal
     # Quotes, lone CRs and whatever numpy might take for a number are left to the careful reader.
-    if not body or re.search(r"[^0-9eE.+\-,\r\n \t]|\r(?!\n)", body):
+    other = rf"[^0-9eE+\-\r\n \t{re.escape(separator)}{re.escape(decimal)}]|\r(?!\n)"
+    if not body or re.search(other, body) or separator == decimal:
         return None
+    if decimal == ",":
+        body = body.replace(",", ".")
+    delimiter = None if separator == " " else separator
     try:
-        values = np.loadtxt(io.StringIO(body), delimiter=",", comments=None, ndmin=2)
+        values = np.loadtxt(io.StringIO(body), delimiter=delimiter, comments=None, ndmin=2)
     except ValueError:
         return None
     if values.shape != (body.count("\n") + 1, len(header.names)):
         return None
     chosen = np.ascontiguousarray(values[:, places])
-    return chosen if np.isfinite(chosen).all() and len(chosen) <= MAX_SAMPLES else None
+    if not np.isfinite(chosen).all() or len(chosen) > MAX_SAMPLES:
+        return None
+    return Rows(chosen, range(header.lines + 1, header.lines + 1 + len(chosen)))
 
 
-def _read_slowly(header: Header, places: Sequence[int], may_lack: Sequence[bool]) -> Floats:
-    problems: list[Problem] = []
-    rows: list[list[float]] = []
-    unsaid = 0
-    for line, cells in _rows(header, problems):
-        found = _row_problems(header, cells, places, may_lack)
-        unsaid += len(found) if len(problems) >= _WORTH_TELLING else 0
-        if len(problems) < _WORTH_TELLING:
-            problems += [Problem(f"{header.label}:{line}", what) for what in found]
-        if not problems:
-            rows.append([_number(cells[place]) for place in places])
-            if len(rows) > MAX_SAMPLES:
-                raise ProfileError([Problem(header.label, f"has more than {MAX_SAMPLES} rows")])
-    if not rows and not problems:
+def _read_slowly(
+    header: Header, places: Sequence[int], may_lack: Sequence[bool], clock: int | None
+) -> Rows:
+    complaints = _Complaints(header.label)
+    records = _Records(header, complaints)
+    values: list[list[float]] = []
+    lines: list[int] = []
+    cell_problem = _cell_checker(header)
+    for line, cells in records:
+        if wrong := _row_problem(header, cells):
+            complaints.add(line, wrong)
+            continue
+        row = []
+        for place, optional in zip(places, may_lack, strict=True):
+            cell = cells[place]
+            if header.dialect.is_number(cell):
+                row.append(float(header.dialect.number(cell)))
+                if math.isfinite(row[-1]):
+                    continue
+            elif (place == clock and is_clock(cell)) or (optional and _is_lacking(cell)):
+                row.append(math.nan)
+                continue
+            complaints.add(line, cell_problem(place, cell))
+        if not complaints:
+            values.append(row)
+            lines.append(line)
+            if len(values) > MAX_SAMPLES:
+                what = f"has more than {MAX_SAMPLES} rows"
+                raise ProfileError([Problem(header.label, what)])
+    problems = complaints.problems()
+    if not values and not problems:
         problems.append(Problem(header.label, "has a header but no rows"))
-    if unsaid:
-        problems.append(Problem(header.label, f"… and {unsaid} more cells or rows like these"))
     if problems:
         raise ProfileError(problems)
-    return np.array(rows)
+    return Rows(np.array(values), lines, records.comments)
 
 
-def _rows(header: Header, problems: list[Problem]) -> Iterator[tuple[int, list[str]]]:
-    """Iterate over the rows with their line numbers; blank lines at the end are none."""
-    reader = csv.reader(io.StringIO(header.text, newline=""), strict=True)
-    blank: list[int] = []
-    first = header.lines + 1
-    while True:
-        line = first + reader.line_num
-        try:
-            cells = next(reader)
-        except StopIteration:
-            return
-        except csv.Error as error:
-            problems.append(Problem(f"{header.label}:{line}", f"is not a CSV row: {error}"))
-            return
-        if not cells or (len(cells) == 1 and not cells[0].strip() and len(header.names) > 1):
-            blank.append(line)
-            continue
-        for empty in blank[:_WORTH_TELLING]:
-            problems.append(Problem(f"{header.label}:{empty}", "is a blank line between rows"))
-        blank.clear()
-        yield line, cells
+class _Complaints:
+    """What is wrong with rows: the same words on many of them are one line."""
+
+    def __init__(self, label: str) -> None:
+        self._label = label
+        self._found: dict[str, list[int]] = {}  # first line and number of lines
+        self._unsaid = 0
+
+    def __bool__(self) -> bool:
+        return bool(self._found)
+
+    def add(self, line: int, what: str) -> None:
+        """Add what is wrong with a row."""
+        if what in self._found:
+            self._found[what][1] += 1
+        elif len(self._found) < _WORTH_TELLING:
+            self._found[what] = [line, 1]
+        else:
+            self._unsaid += 1
+
+    def problems(self) -> list[Problem]:
+        """Return a problem for each kind, at the first line that has it."""
+        said = [
+            Problem(
+                f"{self._label}:{line}", what if count == 1 else f"{what} ({count} rows like this)"
+            )
+            for what, (line, count) in self._found.items()
+        ]
+        if self._unsaid:
+            words = f"… and {self._unsaid} more cells or rows like these"
+            said.append(Problem(self._label, words))
+        return said
 
 
-def _row_problems(
-    header: Header, cells: Sequence[str], places: Sequence[int], may_lack: Sequence[bool]
-) -> list[str]:
-    if len(cells) != len(header.names):
-        return [f"has {len(cells)} cells, the header has {len(header.names)}"]
-    found = []
-    for place, optional in zip(places, may_lack, strict=True):
-        cell, name = cells[place], plain(header.names[place])
-        if not cell.strip() or cell.strip().lower() == "nan":
-            if not optional:
-                found.append(f"{name}: is missing" if not cell.strip() else f"{name}: is nan")
-        elif not _NUMBER.fullmatch(cell):
-            found.append(f"{name}: must be a number, is {shown(cell)}")
-        elif not math.isfinite(float(cell)):
-            found.append(f"{name}: {shown(cell)} is too large for a number")
-    return found
+class _Records:
+    """The rows with their line numbers; comments, and blank lines at the end, are none.
+
+    Parameters
+    ----------
+    header : Header
+    complaints : _Complaints, optional
+        Takes what is wrong with rows that cannot be split into cells.
+    """
+
+    def __init__(self, header: Header, complaints: _Complaints | None = None) -> None:
+        self._header = header
+        self._complaints = _Complaints(header.label) if complaints is None else complaints
+        self._line = header.lines
+        self._fresh = True
+        self.comments = 0
+
+    def _lines(self) -> Iterator[str]:
+        """Iterate over the lines; what starts inside a quoted cell is no comment."""
+        for line in io.StringIO(self._header.text, newline=""):
+            self._line += 1
+            if self._fresh and is_comment(line):
+                self.comments += 1
+                continue
+            if self._fresh:
+                self._start = self._line
+            self._fresh = False
+            yield line
+
+    def __iter__(self) -> Iterator[tuple[int, list[str]]]:
+        reader = self._header.dialect.records(self._lines())
+        blank: list[int] = []
+        while True:
+            self._fresh, self._start = True, self._line + 1
+            try:
+                cells = next(reader)
+            except StopIteration:
+                return
+            except csv.Error as error:
+                self._complaints.add(self._start, f"is not a CSV row: {error}")
+                return
+            if not cells or (len(cells) == 1 and not cells[0].strip()):
+                blank.append(self._start)
+                continue
+            for line in blank:
+                self._complaints.add(line, "is a blank line between rows; take it out")
+            blank.clear()
+            yield self._start, cells
 
 
-def _number(cell: str) -> float:
-    return float(cell) if cell.strip() else math.nan
+def _row_problem(header: Header, cells: Sequence[str]) -> str:
+    """Say what is wrong with a row as a whole; separators too many at its end are not."""
+    names, width = header.names, len(header.names)
+    if cells[0].strip() == names[0] and [cell.strip() for cell in cells] == names:
+        return "is the header again; take it out"
+    if len(cells) == width or (len(cells) > width and not any(map(str.strip, cells[width:]))):
+        return ""
+    if len(cells) < width and len(cells) >= max(i + 1 for i, name in enumerate(names) if name):
+        return ""
+    what = f"has {len(cells)} cell{'s' * (len(cells) != 1)}, the header has {width}"
+    if len(cells) == 2 * width and header.dialect.separator == ",":
+        what += "; a decimal comma cannot be told from one between columns: save with semicolons"
+    return what
+
+
+def _cell_checker(header: Header) -> Callable[[int, str], str]:
+    """Return what says why a cell is no number of its column."""
+    other = "," if header.dialect.decimal == "." else "."
+
+    def problem(place: int, cell: str) -> str:
+        name, cell = plain(header.names[place]), cell.strip()
+        if not cell:
+            return f"{name}: is missing"
+        if cell.lower() == "nan":
+            return f"{name}: is nan"
+        if header.dialect.is_number(cell):
+            return f"{name}: {shown(cell)} is too large for a number"
+        hint = ""
+        if header.dialect.is_number(cell.replace(other, header.dialect.decimal)):
+            sign = "comma" if other == "," else "point"
+            hint = f", with a decimal {sign} where the file has the other sign"
+        return f"{name}: must be a number, is {shown(cell)}{hint}"
+
+    return problem
+
+
+def _is_lacking(cell: str) -> bool:
+    return not cell.strip() or cell.strip().lower() == "nan"

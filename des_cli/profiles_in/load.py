@@ -22,7 +22,7 @@ from des_cli.profiles_in.profile_yaml import (
     parse_settings,
 )
 from des_cli.profiles_in.schema import ProfileSettings
-from des_cli.profiles_in.source import decode, label_of, read_source
+from des_cli.profiles_in.source import decode, decode_table, label_of, read_source
 from des_cli.profiles_in.wording import did_you_mean
 
 STDIN_LABEL = "<stdin>"
@@ -38,6 +38,8 @@ def load_profile(
     columns: Mapping[str, str] | None = None,
     stdin: bytes | None = None,
     part: int | None = None,
+    separator: str | None = None,
+    decimal: str | None = None,
 ) -> Profile:
     """Read and check a profile.
 
@@ -56,6 +58,9 @@ def load_profile(
         What standard input held, where ``source`` is ``-``.
     part : int, optional
         With ``gap: split``: which stretch between gaps, counted from 1; see `count_parts`.
+    separator, decimal : str, optional
+        For a CSV profile that is not written with commas and decimal points: what
+        stands between its columns, and its decimal sign.
 
     Returns
     -------
@@ -68,7 +73,8 @@ def load_profile(
     FileAccessError
         If a file cannot be read.
     """
-    return _load(source, settings, dict(columns or {}), stdin, GapHandling(part=part))
+    gaps = GapHandling(part=part)
+    return _load(source, settings, dict(columns or {}), stdin, gaps, separator, decimal)
 
 
 def count_parts(
@@ -77,22 +83,26 @@ def count_parts(
     settings: Sequence[str] = (),
     columns: Mapping[str, str] | None = None,
     stdin: bytes | None = None,
+    separator: str | None = None,
+    decimal: str | None = None,
 ) -> int:
     """Return how many profiles a source holds: with ``gap: split`` one a stretch between gaps.
 
     Parameters
     ----------
-    source, settings, columns, stdin
+    source, settings, columns, stdin, separator, decimal
         As of `load_profile`, whose errors this raises too, but only where there is
         something to split.
     """
     path, label, data = _read(source, stdin)
     asked = any(_SPLIT in setting for setting in settings)
     # The word has to stand somewhere: a long table need not be read to know that.
-    if not asked and (_SPLIT.encode() not in data or not _is_yaml(path, decode(data, label))):
+    if not asked and _SPLIT.encode() not in data:
+        return 1
+    if not asked and not _is_yaml(path, decode_table(data, label)[0]):
         return 1
     gaps = GapHandling(part=1)
-    _load(source, settings, dict(columns or {}), stdin, gaps)
+    _load(source, settings, dict(columns or {}), stdin, gaps, separator, decimal)
     return gaps.parts
 
 
@@ -102,25 +112,27 @@ def _load(
     columns: dict[str, str],
     stdin: bytes | None,
     gaps: GapHandling,
+    separator: str | None,
+    decimal: str | None,
 ) -> Profile:
     path, label, data = _read(source, stdin)
-    text = decode(data, label)
+    text, remarks = decode_table(data, label)
     folder = path.parent if path else Path()
     digest = hashlib.sha256(data)
-    if settings or columns:
-        digest.update(json.dumps([list(settings), sorted(columns.items())]).encode())
+    given = {"separator": separator, "decimal": decimal}
+    written = {key: value for key, value in given.items() if value is not None}
+    if settings or columns or written:
+        options = [list(settings), sorted(columns.items()), *([written] if written else [])]
+        digest.update(json.dumps(options).encode())
     if gaps.part is not None:
         digest.update(f"part {gaps.part}".encode())
-    reading = Reading(label, folder, digest, gaps=gaps)
+    reading = Reading(label, folder, digest, gaps=gaps, remarks=[*remarks])
     name = _safe_name(path.stem if path else "stdin")
     try:
         if _is_yaml(path, text):
-            if columns:
-                raise UsageError(
-                    [Problem(label, "--column renames columns of a CSV profile; this is YAML")]
-                )
-            return parse_profile(text, reading, name, settings)
-        return _load_csv(text, reading, name, settings, columns)
+            _refuse_table_options(label, columns, written)
+            return parse_profile(decode(data, label), reading, name, settings)
+        return _load_csv(text, reading, name, settings, columns, written)
     except ProfileError as error:
         raise ProfileError(bounded(error.problems)) from None
 
@@ -158,6 +170,20 @@ def _is_yaml(path: Path | None, text: str) -> bool:
     return False
 
 
+def _refuse_table_options(
+    label: str, columns: Mapping[str, str], written: Mapping[str, str]
+) -> None:
+    """Refuse options that say how a CSV is to be read, of a YAML profile."""
+    problems = []
+    if columns:
+        problems.append(Problem(label, "--column renames columns of a CSV profile; this is YAML"))
+    for key in written:
+        what = f"--{key} says how a CSV profile is written; this is YAML: give samples.{key}"
+        problems.append(Problem(label, what))
+    if problems:
+        raise UsageError(problems)
+
+
 def _safe_name(stem: str) -> str:
     """Make a name that a folder may have."""
     return re.sub(r"[^\w .,+()-]", "_", stem).strip(" .")[:100] or "profile"
@@ -169,10 +195,21 @@ def _load_csv(
     name: str,
     settings: Sequence[str],
     columns: Mapping[str, str],
+    written: Mapping[str, str],
 ) -> Profile:
     def commands(document: ProfileSettings, reading: Reading, findings: Findings) -> Commands:
+        said: dict[str, str | None] = dict(written)
+        if document.samples is not None:
+            for key in ("separator", "decimal"):
+                said.setdefault(key, getattr(document.samples, key))
         return parse_samples(
-            text, reading.label, columns, reading.conditioning, reading.gaps, reading.remarks
+            text,
+            reading.label,
+            columns,
+            **said,
+            conditioning=reading.conditioning,
+            gaps=reading.gaps,
+            remarks=reading.remarks,
         )
 
     document, findings = parse_settings(settings, reading.label)

@@ -38,7 +38,7 @@ from des_cli.profiles_in.schema import BodyRates as BodyRatesSection
 from des_cli.profiles_in.schema import Joints as JointsSection
 from des_cli.profiles_in.schema import ProfileDocument, ProfileSettings
 from des_cli.profiles_in.sections import Section
-from des_cli.profiles_in.source import decode, label_of, read_source
+from des_cli.profiles_in.source import decode, decode_table, label_of, read_source
 from des_cli.profiles_in.wording import one_of
 from des_cli.profiles_in.yaml_nodes import Node, parse_yaml
 
@@ -64,7 +64,7 @@ class Reading:
     gaps : GapHandling
         What is done where samples are missing.
     remarks : list of str
-        What reading changed of the file, a sentence each.
+        Takes sentences for the user on what was done to read it.
     """
 
     label: str
@@ -74,8 +74,8 @@ class Reading:
     gaps: GapHandling = field(default_factory=GapHandling)
     remarks: list[str] = field(default_factory=list)
 
-    def referred(self, name: str, place: str) -> tuple[str, str]:
-        """Return label and text of a file that the profile refers to.
+    def referred(self, name: str, place: str) -> tuple[str, bytes]:
+        """Return label and content of a file that the profile refers to.
 
         Parameters
         ----------
@@ -88,7 +88,7 @@ class Reading:
         label = label_of(path)
         data = read_source(path, label)
         self.digest.update(hashlib.sha256(data).digest())
-        return label, decode(data, label)
+        return label, data
 
 
 def parse_profile(text: str, reading: Reading, name: str, settings: Sequence[str]) -> Profile:
@@ -206,8 +206,8 @@ def read_machine(document: ProfileSettings, reading: Reading, findings: Findings
     if not isinstance(choice, str):
         return build_machine(choice, ("machine",), findings)
     if is_machine_file(choice):
-        label, text = reading.referred(choice, findings.root.place_of(["machine"]))
-        return parse_machine(text, label)
+        label, data = reading.referred(choice, findings.root.place_of(["machine"]))
+        return parse_machine(decode(data, label), label)
     return named_machine(choice, ("machine",), findings)
 
 
@@ -280,7 +280,16 @@ def document_commands(
 
 
 def _sampled(section: Any, reading: Reading, findings: Findings) -> Commands:
-    label, text = reading.referred(section.file, findings.root.place_of(["samples", "file"]))
+    label, data = reading.referred(section.file, findings.root.place_of(["samples", "file"]))
+    text, remarks = decode_table(data, label)
+    reading.remarks += remarks
     return parse_samples(
-        text, label, section.columns, reading.conditioning, reading.gaps, reading.remarks
+        text,
+        label,
+        section.columns,
+        separator=section.separator,
+        decimal=section.decimal,
+        conditioning=reading.conditioning,
+        gaps=reading.gaps,
+        remarks=reading.remarks,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter
@@ -28,6 +29,7 @@ from des_cli.profiles_in.conditioning_schema import (
     Smooth,
     Trim,
 )
+from des_cli.profiles_in.dialect import parse_decimal, parse_separator
 from des_cli.profiles_in.expression import Expression, ExpressionError, parse_expression
 from des_cli.profiles_in.g_schema import g_section
 from des_cli.profiles_in.gaps import GapPolicy
@@ -53,6 +55,18 @@ def _parse(text: str) -> Expression:
         return parse_expression(text)
     except ExpressionError as error:
         raise fault(str(error)) from None
+
+
+def _in_words(parse: Callable[[str], str]) -> Callable[[str], str]:
+    """Return a parser whose ValueError is a sentence for the user."""
+
+    def check(text: str) -> str:
+        try:
+            return parse(text)
+        except ValueError as error:
+            raise fault(f"{error}, is {shown(text)}") from None
+
+    return check
 
 
 def kind_of(value: Any) -> str | None:
@@ -173,10 +187,24 @@ BodyRates = measured(
 G = g_section(_Number | _Text | _Segments, Command)
 
 
+Separator = Annotated[
+    str,
+    Field(strict=True, description="what stands between the columns: , ; | tab or space"),
+    AfterValidator(_in_words(parse_separator)),
+]
+Decimal = Annotated[
+    str,
+    Field(strict=True, description="the decimal sign: . or ,"),
+    AfterValidator(_in_words(parse_decimal)),
+]
+
+
 class SamplesReading(Section):
     """How the samples of a CSV file are read."""
 
     euler: EulerOrder = OMITTED
+    separator: Separator = OMITTED
+    decimal: Decimal = OMITTED
 
 
 class Samples(SamplesReading):
@@ -184,7 +212,7 @@ class Samples(SamplesReading):
 
     file: Annotated[str, Field(strict=True, min_length=1)]
     columns: dict[str, Annotated[str, Field(strict=True)]] = Field(
-        default_factory=dict, description="name with its unit: name in the file's header"
+        default_factory=dict, description="our name, with its unit: name in the file's header"
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import stat
 from pathlib import Path
@@ -50,9 +51,40 @@ def decode(data: bytes, label: str) -> str:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        what = f"is not UTF-8 text (byte 0x{data[error.start]:02x}); save it as UTF-8"
+        byte, line = _first_wrong_byte(data, error)
+        what = f"is not UTF-8 text (byte {byte}); save it as UTF-8"
         raise ProfileError([Problem(f"{label}:{line}", what)]) from None
+    return _without_nul(text, label)
+
+
+def decode_table(data: bytes, label: str) -> tuple[str, tuple[str, ...]]:
+    """Return the text of a table, and a sentence if it is not UTF-8.
+
+    A recorder's header may hold a degree sign in Latin-1, and a column that
+    nobody reads must not reject a file. Any bytes are Latin-1; what is wrong
+    with a number or a name that is read is said where it is read.
+
+    Raises
+    ------
+    ProfileError
+        If the text is UTF-16, or holds a NUL.
+    """
+    try:
+        return _without_nul(data.decode("utf-8-sig"), label), ()
+    except UnicodeDecodeError as error:
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            raise ProfileError([Problem(label, "is UTF-16 text; save it as UTF-8")]) from None
+        byte, line = _first_wrong_byte(data, error)
+    remark = f"the file is not UTF-8 (byte {byte} in line {line}): it is read as Latin-1"
+    return _without_nul(data.decode("latin-1"), label), (remark,)
+
+
+def _first_wrong_byte(data: bytes, error: UnicodeDecodeError) -> tuple[str, int]:
+    """Return the first byte that is not UTF-8, and its line."""
+    return f"0x{data[error.start]:02x}", data.count(b"\n", 0, error.start) + 1
+
+
+def _without_nul(text: str, label: str) -> str:
     nul = text.find("\0")
     if nul >= 0:
         line = text.count("\n", 0, nul) + 1

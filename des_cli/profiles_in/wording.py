@@ -40,7 +40,7 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     if len(name) > _SHOWN_LENGTH:
         return ""
     nearest = difflib.get_close_matches(name, sorted(set(known)), n=1, cutoff=0.6)
-    return f" (did you mean {nearest[0]}?)" if nearest else ""
+    return f" (did you mean {plain(nearest[0])}?)" if nearest else ""
 
 
 def one_of(choices: Sequence[str]) -> str:

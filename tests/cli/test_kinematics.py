@@ -195,6 +195,9 @@ def test_a_profile_from_stdin_and_by_name_with_settings(invoke, small: str) -> N
         "kinematics", "-", "--column", "t_s=t", "--format", "ndjson", input=csv_profile
     )
     assert len(renamed.stdout.splitlines()) == 3
+    tabs = csv_profile.replace(",", "\t").replace("t\t", "t_s\t", 1)
+    args = ("--separator", "tab", "--format", "ndjson")
+    assert invoke("kinematics", "-", *args, input=tabs).stdout == renamed.stdout
 
 
 def test_a_pipe_gets_json(invoke, small: str) -> None:

@@ -133,6 +133,20 @@ def test_column_renames_a_header(invoke, small: str, tmp_path) -> None:
     assert invoke("reduce", "log.csv", "--column", "t_s=clock", *args).exit_code == 0
 
 
+def test_a_spreadsheet_s_dialect_is_asked_for_and_read(invoke, small: str, tmp_path) -> None:
+    text = invoke("reduce", small, "-o", "-").stdout
+    (tmp_path / "plain.csv").write_text(text)
+    (tmp_path / "log.csv").write_text(text.replace(",", ";").replace(".", ","))
+    refused = invoke("reduce", "log.csv", "-o", "-")
+    assert (refused.exit_code, refused.stdout) == (3, "")
+    (line,) = refused.stderr.splitlines()
+    assert "give --separator ';' --decimal ," in line
+    args = ("--limits", "warn", "-o", "-")
+    read = invoke("reduce", "log.csv", "--separator", ";", "--decimal", ",", *args)
+    assert read.exit_code == 0
+    assert read.stdout == invoke("reduce", "plain.csv", *args).stdout
+
+
 @pytest.mark.parametrize(
     ("args", "key", "value"),
     [

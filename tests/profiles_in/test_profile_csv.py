@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from des_cli.errors import ProfileError
 from des_cli.model.profile import BodyRates, JointCommands
-from des_cli.profiles_in.csv_table import read_columns, split_header
+from des_cli.profiles_in.csv_header import split_header
+from des_cli.profiles_in.csv_table import read_columns
 from des_cli.profiles_in.load import load_profile
 from des_cli.profiles_in.profile_csv import parse_samples
 
@@ -101,7 +102,7 @@ def test_the_ways_in_which_spreadsheets_write_are_read(text: str) -> None:
         ("0,1,2,3\n1,1,1e12,3\n", 3, "fork_deg: is beyond 1e+06 rad"),
         ("0,1,2,3\n\n1,1,2,3\n", 3, "is a blank line between rows"),
         ('0,1,2,3\n1,1,"2,3\n', 3, "is not a CSV row"),
-        ("0;1;2;3\n1;1;2;3\n", 2, "has 1 cells"),
+        ("0;1;2;3\n1;1;2;3\n", 2, "has 1 cell, the header has 4"),
     ],
 )
 def test_a_bad_row_is_named_by_its_line(body: str, line: int, words: str) -> None:
@@ -122,18 +123,22 @@ def test_a_quoted_line_break_keeps_the_count_of_lines() -> None:
         (JOINTS.encode(), "has a header but no rows"),
         (JOINTS.encode() + b"0,1,2,3\n", "has one row"),
         (b"t_s,arm_rpm,arm_rpm,cab_deg\n0,1,2,3\n", "the column arm_rpm stands 2 times"),
-        (b"t_s,arm_rpm,,cab_deg\n0,1,2,3\n", "column 3 has no name"),
+        (b"t_s,arm_rpm,,cab_deg\n0,1,2,3\n", "a column is missing: fork_rad or fork_deg"),
         (JOINTS.encode() + b"0,1,\x00,3\n", "holds a NUL byte"),
-        (JOINTS.encode() + b"0,1,\xff,3\n", "is not UTF-8"),
-        (JOINTS.encode("utf-16"), "is not UTF-8"),
+        (JOINTS.encode() + b"0,1,\xff,3\n", "fork_deg: must be a number, is 'ÿ'"),
+        (JOINTS.encode("utf-16"), "is UTF-16 text; save it as UTF-8"),
         (b"t,arm,fork,cab\n0,1,2,3\n", "t is a time and needs its unit"),
-        (b"t_s,arm_m,fork_deg,cab_deg\n0,1,2,3\n", "arm is a rate and needs its unit"),
+        (b"t_s,arm_m,fork_deg,cab_deg\n0,1,2,3\n", "arm is a rate or an angle and needs its unit"),
         (b"t_s,arm_rpm,frok_deg,cab_deg\n0,1,2,3\n", "did you mean fork_deg?"),
         (b"t_s,arm_rpm,fork_deg\n0,1,2\n", "a column is missing: cab_rad or cab_deg"),
         (b"t_s,p_rad_s,q_rad_s\n0,1,2\n", "a column is missing: r_rad_s"),
         (b"t_s,t_ms,arm_rpm,fork_deg,cab_deg\n0,0,1,2,3\n", "t is given twice: t_s and t_ms"),
         (b"t_s\n0\n1\n", "has neither joint commands"),
-        (b"t_s,arm_rpm,fork_deg,cab_deg,p_rad_s\n0,1,2,3,4\n", "both joint commands"),
+        (b"t_s,fork_deg,p_rad_s\n0,1,2\n", "both joint commands"),
+        (
+            b"t_s,arm_rpm,fork_deg,cab_deg,p_rpm,q_rpm,r_rpm\n0,1,2,3,4,5,6\n",
+            "choose with --column",
+        ),
         (b'"t_s\n', "is not a CSV header"),
         (b"t_s," + b"x" * 200_000 + b"\n", "is not a CSV header"),
     ],
@@ -146,9 +151,16 @@ def test_a_bad_file_is_refused_in_words(text: bytes, words: str) -> None:
 
 def test_all_bad_cells_are_named_at_once_and_a_flood_is_counted() -> None:
     assert len(problems_of(JOINTS + "0,a,2,3\n1,1,b,3\n0.5,1,2,c\n")) == 3
-    flood = problems_of(JOINTS + "".join(f"{k},x,y,z\n" for k in range(200)))
+    flood = problems_of(JOINTS + "".join(f"{k},x{k},y{k},z{k}\n" for k in range(200)))
     assert len(flood) < 40
     assert "570 more" in flood[-1]  # 600 cells are wrong, 30 are named
+
+
+def test_what_is_wrong_alike_on_many_rows_is_one_line() -> None:
+    assert problems_of(JOINTS + "".join(f"{k},1,-,3\n{k},1,2\n" for k in range(1000))) == [
+        "<stdin>:2: fork_deg: must be a number, is '-' (1000 rows like this)",
+        "<stdin>:3: has 3 cells, the header has 4 (1000 rows like this)",
+    ]
 
 
 def test_renaming_is_checked_against_the_file() -> None:
@@ -157,7 +169,10 @@ def test_renaming_is_checked_against_the_file() -> None:
     assert "did you mean time" in problems_of(text, t_s="tiem")[0]
     assert "needs its unit" in problems_of(text, t="time")[0]
     assert "named twice" in problems_of(text, t_s="time", t_ms="time")[0]
-    assert "has a column q_rad_s already" in problems_of(text, t_s="time", q_rad_s="p_rad_s")[0]
+    # the file's own q_rad_s gives way to the named one, and p_rad_s is used up
+    assert problems_of(text, t_s="time", q_rad_s="p_rad_s") == [
+        "<stdin>:1: a column is missing: p_rad_s, p_deg_s or p_rpm"
+    ]
 
 
 def test_an_attitude_that_is_no_rotation_is_refused() -> None:
@@ -175,13 +190,21 @@ def test_an_attitude_that_is_no_rotation_is_refused() -> None:
     )
 )
 def test_the_fast_and_the_careful_reader_read_the_same_doubles(rows: list[list[float]]) -> None:
-    plain = "a,b,c\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows)
+    text = [["a", "b", "c"], *[[*map(repr, row)] for row in rows]]
+    plain = "".join(",".join(row) + "\n" for row in text)
+    spreadsheet = plain.replace(",", ";").replace(".", ",")
     stream = io.StringIO()
-    csv.writer(stream, quoting=csv.QUOTE_ALL).writerows([["a", "b", "c"], *rows])
-    fast = read_columns(split_header(plain, "x"), ["c", "a"])
-    careful = read_columns(split_header(stream.getvalue(), "x"), ["c", "a"])
-    np.testing.assert_array_equal(fast, np.array(rows)[:, [2, 0]])
-    np.testing.assert_array_equal(careful, fast)
+    csv.writer(stream, quoting=csv.QUOTE_ALL).writerows(text)
+    expected = np.array(rows)[:, [2, 0]]
+    for each, separator, decimal in (
+        (plain, ",", "."),
+        (plain.replace(",", " "), " ", "."),
+        (spreadsheet, ";", ","),
+        (stream.getvalue(), ",", "."),
+        (spreadsheet.replace("\n", ";\n"), ";", ","),
+    ):
+        header = split_header(each, "x", separator, decimal)
+        np.testing.assert_array_equal(read_columns(header, [2, 0]).values, expected)
 
 
 @settings(max_examples=150, deadline=None)
