@@ -37,7 +37,8 @@ CONTRACT = {
     "executable": {
         "replaced", "breaks_limits", "joint_change_relative", "joint_change_max_rad",
         "seat_rate_deviation_relative", "seat_g_rms_error_g",
-        "seat_angular_acceleration_rms_error_rad_s2", "attitude_error_max_deg", "coriolis_reduction",
+        "seat_angular_acceleration_rms_error_rad_s2", "attitude_error_max_deg",
+        "coriolis_reduction",
     },
     "changes": {"damping", "machine", "smoothing"},
     "baseline": {"report_sweep", "constant_p"},

@@ -125,8 +125,10 @@ def test_the_cobras_stay_the_problem_of_the_study(name: str) -> None:
 def test_every_other_built_in_profile_leaves_its_reduction_to_the_defaults() -> None:
     others = [p.name for p in builtin_profiles() if not p.name.startswith("cobra")]
     assert len(others) > 5
-    default = Reduction()
     for name in others:
         found = load_profile(name).reduction
+        # these two ask for more G than the machine makes, and say so
+        lacking = name in ("g_rapid_onset", "g_flight")
+        default = Reduction(allow_change=0.2 if lacking else None)
         for field in fields(Reduction):
             np.testing.assert_array_equal(getattr(found, field.name), getattr(default, field.name))
