@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.chain import Chain
 from des_cli.model.metric import METRICS, Budget, MetricKey
-from des_cli.model.motion import DesiredMotion, Motion
-from des_cli.model.profile import Profile, Reduction
+from des_cli.model.motion import Motion, Shortfall
+from des_cli.model.profile import Reduction
 from des_cli.reduction.fidelity import Deviation
 
 LARGEST_CHANGE = 0.1
@@ -45,13 +45,17 @@ class Change:
     deviation: Deviation
 
     @classmethod
-    def between(cls, profile: Profile, asked: DesiredMotion, motion: Motion) -> Change:
-        """Measure a motion against what a profile asks for."""
-        chains = (chain_of(profile.machine, profile.seat),) * 2
-        gravity = profile.machine.gravity
-        return cls(
-            Deviation.between(asked.motion, motion, chains, gravity, shortfall=asked.shortfall)
-        )
+    def between(
+        cls,
+        record: Motion,
+        motion: Motion,
+        chain: Chain,
+        gravity: float,
+        shortfall: Shortfall | None = None,
+    ) -> Change:
+        """Measure a motion of a chain under a gravity [m/s^2] against a record."""
+        chains = (chain, chain)
+        return cls(Deviation.between(record, motion, chains, gravity, shortfall=shortfall))
 
     @property
     def nothing(self) -> bool:

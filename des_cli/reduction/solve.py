@@ -84,7 +84,7 @@ def find_motion(
         return Found(free.desired, free.seat, problem, None, free.solution, free.budgets)
     desired, trouble = executable_motion(profile, target)
     problem = pose_problem(profile, desired, asked)
-    change = Change.between(profile, asked, desired)
+    change = Change.between(asked.motion, desired, problem.chain, problem.gravity, asked.shortfall)
     refusal = change.refusal(reduction)
     if trouble or refusal:
         status: Status = "infeasible" if trouble else "changed"

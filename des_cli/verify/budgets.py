@@ -21,9 +21,9 @@ BUDGET_TOLERANCE = 1e-9
 SPENT, SPENT_OF_TORN = 0.95, 0.6
 """Share of a budget from which on it may hold a motion. A method keeps a little clear of
 its budgets, and more where a table of few rows is not quite its motion. Where the table
-asked for is torn, its positions jump by what no rate tells, or where it was so rough that
-its user allowed a change, a method that looks between the samples sees more than the
-samples have: more of a budget may seem to be left."""
+asked for is torn, its positions jump by what no rate tells, or where it is rough from sample
+to sample, a method that looks between the samples sees more than the samples have: more of
+a budget may seem to be left."""
 
 TORN = 0.05
 """Largest difference of a mean rate by positions from that by rates, over the joint's

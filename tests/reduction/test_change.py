@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from des_cli.kinematics.chain import chain_of
+from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
-from des_cli.model.motion import DesiredMotion, Motion, Shortfall
-from des_cli.model.profile import JointCommands, Profile, Reduction
+from des_cli.model.motion import Motion, Shortfall
+from des_cli.model.profile import Reduction
 from des_cli.reduction.change import Change
 
 T = np.linspace(0.0, 4.0, 81)
@@ -24,12 +26,8 @@ def motion_of(scale=1.0):
 
 def change_of(scale, shortfall=None):
     record = motion_of()
-    command = JointCommands(np.full(81, 0.8), record.angle[:, 1:], *(np.zeros((80, 2)),) * 2)
-    asked = DesiredMotion(
-        record, np.ones(81), np.zeros(81, bool), np.zeros((81, 3)), shortfall=shortfall
-    )
     motion = record if scale == 1.0 else motion_of(scale)
-    return Change.between(Profile("p", T, command, DES), asked, motion)
+    return Change.between(record, motion, chain_of(DES, Seat()), DES.gravity, shortfall)
 
 
 def closed_form(scale):

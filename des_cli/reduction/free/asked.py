@@ -31,9 +31,13 @@ from des_cli.reduction.reference import sample_sides
 from des_cli.solver.spline import GAUSS
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
-ROUGH = 1e-2
-"""Share of a quantity's square that its projection leaves out, from which a record is rough:
-a tenth of its size. Of a maneuver on coarse knots it is a thousandth, on fine ones nothing."""
+ROUGH = 1e-3
+"""Share of a quantity's square that samples have beside the mean of their neighbours, from
+which a record is rough: of the built-in maneuvers it is 4e-6 at the most, of two logs of
+gyros 6e-3 and 0.1."""
+
+CLOSE = 0.01
+"""Relative difference of steps that counts as none: a grid divides its time evenly."""
 
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
@@ -118,11 +122,25 @@ class Asked:
             floor[quantity] = square[quantity] - float(np.sum(target**2))
         return cls(values, square, floor)
 
-    @property
-    def rough(self) -> bool:
-        """Whether the samples are more than the knots hold: of the rate, or of G."""
-        left: tuple[Quantity, ...] = ("rate", "force")
-        return any(abs(self.floor[q]) > ROUGH * self.square[q] for q in left)
+
+def is_rough(response: Response, t: Floats, step: float) -> bool:
+    """Whether the rate or the G of a record jumps from sample to sample, faster than knots.
+
+    Parameters
+    ----------
+    response : Response
+        As asked for, at both ends of every interval of the record.
+    t : (n,) array
+        The record's times [s].
+    step : float
+        Of the grid [s]: samples that are farther apart it holds.
+    """
+    close = t[2:] - t[:-2] <= 2.0 * step * (1.0 + CLOSE)
+    for sides in (response.seat_rate, response.seat_g):
+        kink = sides[1:, 0] - 0.5 * (sides[:-1, 0] + sides[1:, 1])
+        if np.sum(kink[close] ** 2) > ROUGH * np.sum(sides[:, 0] ** 2):
+            return True
+    return False
 
 
 def _missing(shortfall: Shortfall) -> dict[Quantity, Floats]:

@@ -201,14 +201,8 @@ class _Search:
     def _change(self, desired: Motion) -> Change:
         """Measure what was changed of the record already."""
         task = self.task
-        return Change(
-            Deviation.between(
-                task.reference,
-                desired,
-                (task.chain, task.chain),
-                task.machine.gravity,
-                shortfall=task.shortfall,
-            )
+        return Change.between(
+            task.reference, desired, task.chain, task.machine.gravity, task.shortfall
         )
 
     def _between(self, fit: ExecutableSpline) -> dict[MetricKey, float]:

@@ -22,7 +22,7 @@ from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.response import Response
-from des_cli.reduction.free.asked import Asked
+from des_cli.reduction.free.asked import Asked, is_rough
 from des_cli.reduction.free.ground_cross import GroundCross
 from des_cli.reduction.free.limit_rows import LimitRows, Tie
 from des_cli.reduction.free.local_bounds import (
@@ -132,6 +132,10 @@ class FreeTask:
         made = respond_on(self.chain, self.machine.gravity, self.reference)
         return with_shortfall(made, self.shortfall)
 
+    def rough(self, grid: SplineGrid) -> bool:
+        """Return whether what is asked is faster than the knots of a grid."""
+        return is_rough(self.asked(), self.reference.t, grid.step)
+
     def with_response(self) -> FreeTask:
         """Return the task with what it would evaluate for every grid."""
         return replace(self, response=self.asked())
@@ -190,7 +194,8 @@ def pose_motion(
     seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
     asked = _asked(seat, task, windows)
     # Of a rough record no motion makes the cross-coupling: costs are relative to the base's.
-    size = _energy(task, grid, *_along(grid, base)) if asked.rough else cross_coupling(task, grid)
+    along = _along(grid, base) if task.rough(grid) else None
+    size = cross_coupling(task, grid) if along is None else _energy(task, grid, *along)
     measures = _Measures(grid, base, angle, asked, size)
     acceleration_limit = np.array([limit.acceleration for limit in task.machine.limits])
     unit = np.where(np.isfinite(acceleration_limit), acceleration_limit, UNIT_ACCELERATION)
@@ -243,14 +248,13 @@ def in_ground_axes(reduction: Reduction) -> bool:
 
 def _asked(seat: SeatMotion, task: FreeTask, windows: Windows) -> Asked:
     """Return what is asked of the seat: at the points, or of a rough record by its samples."""
-    projected = Asked.projected(task.asked(), task.reference.t, windows)
-    if projected.rough:
-        return projected
+    if task.rough(windows.grid):
+        return Asked.projected(task.asked(), task.reference.t, windows)
     return Asked.at_points(seat, task.reference, task.shortfall, windows.times())
 
 
 class _Measures:
-    """Costs and budgets on a grid, relative to the reference's own size."""
+    """Costs on a grid, and budgets relative to the size of what is asked for."""
 
     def __init__(
         self,
