@@ -169,9 +169,9 @@ def test_the_optimum_of_another_seat():
 
 def test_budgets_on_a_table_whose_positions_jump():
     # no sample at 5 s, where the cab turns back: within one interval it is elsewhere than
-    # its rates tell; the knots do not hold that, and the budget on G is spent at the samples
+    # its rates tell, and less of the budget on G is seen at the samples than between them
     case = Case(asked=make_cobra(1013))
-    assert -1e-3 < case.value(f"budget.{G}") <= 0.0
+    assert -0.4 < case.value(f"budget.{G}") < -0.2
     assert case.failed() == set()
     assert case.value("optimality") < 0.01
 
