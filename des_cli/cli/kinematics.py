@@ -8,17 +8,11 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
-from des_cli.cli.options import (
-    TABLE_FORMATS,
-    machine_option,
-    machine_settings,
-    read_stdin,
-    setting_options,
-    verbosity_options,
-)
+from des_cli.cli.options import TABLE_FORMATS, verbosity_options
+from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_job
 from des_cli.cli.state_options import in_si, option_name, state_options
 from des_cli.cli.stdout import write_data
-from des_cli.job import STANDARD_STREAM, Job, TableFormat
+from des_cli.job import Job, TableFormat
 from des_cli.model.machine import JOINTS, Seat
 
 if TYPE_CHECKING:
@@ -71,13 +65,14 @@ def kinematics(
         raise click.UsageError("parquet is not for a terminal: redirect stdout.")
     if profile is not None:
         _refuse_beside_profile(given)
-        source = Job(
+        source = source_job(
             profile,
-            settings=(*machine_settings(machine), *settings),
+            settings,
+            machine=machine,
+            stdin=read_stdin((profile,)),
             columns=columns,
             separator=separator,
             decimal=decimal,
-            stdin=read_stdin((profile,)) if profile == STANDARD_STREAM else None,
         )
         write_data(_motion(source, form))
         return

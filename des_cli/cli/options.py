@@ -1,22 +1,18 @@
-"""Every option that more than one command has, or that maps to a profile's key, once.
+"""Every option that more than one command has, or that maps to a key of ``reduction:``, once.
 
 A shared option is a decorator; a command picks those that it understands.
 """
 
 from __future__ import annotations
 
-import json
 import os
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
-from des_cli.cli.conditioning_options import conditioning_options
 from des_cli.cli.console import Console
-from des_cli.errors import FileAccessError, Problem
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -59,75 +55,6 @@ def color_option(command: F) -> F:
         callback=_on_color,
         help="Color the words on stderr; auto respects NO_COLOR.",
     )(command)
-
-
-def profile_argument(command: F) -> F:
-    """Add ``PROFILE...``."""
-    return click.argument("profiles", metavar="PROFILE...", nargs=-1, required=True)(command)
-
-
-def setting_options(command: F) -> F:
-    """Add the options that change how a profile is read, such as ``--set`` and ``--trim``.
-
-    ``--gap`` comes to the command as a setting; its own value is not passed.
-    """
-    settings = click.option(
-        "--set",
-        "settings",
-        metavar="KEY=VALUE",
-        multiple=True,
-        callback=_with_gap,
-        help="Override a key of the profile by its path, such as reduction.r2=0.2; repeatable.",
-    )
-    columns = click.option(
-        "--column",
-        "columns",
-        metavar="NAME=HEADER",
-        multiple=True,
-        callback=_read_columns,
-        help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
-    )
-    gap = click.option(
-        "--gap",
-        type=click.Choice(["refuse", "bridge", "split"]),
-        is_eager=True,
-        expose_value=False,
-        callback=_keep_gap,
-        help="Where samples are missing: refuse, interpolate, or make a profile of each stretch.  "
-        "[default: bridge up to 0.5 s]",
-    )
-    separator = click.option(
-        "--separator",
-        metavar="SIGN",
-        callback=_read_separator,
-        help="What stands between the columns of a CSV profile: ',', ';', '|', tab or space.",
-    )
-    decimal = click.option(
-        "--decimal",
-        metavar="SIGN",
-        callback=_read_decimal,
-        help="The decimal sign of a CSV profile: '.' or ','.",
-    )
-    return settings(columns(separator(decimal(gap(conditioning_options(command))))))
-
-
-def machine_option(command: F) -> F:
-    """Add ``--machine``, which names another machine than the profile's."""
-    return click.option(
-        "--machine",
-        metavar="NAME|FILE",
-        callback=_require_name,
-        help="A built-in machine or a YAML file, instead of the profile's.  [default: des]",
-    )(command)
-
-
-def machine_settings(machine: str | None) -> tuple[str, ...]:
-    """Turn ``--machine`` into a setting, which stands before those that change the machine.
-
-    >>> machine_settings("my machine.yaml")
-    ('machine="my machine.yaml"',)
-    """
-    return () if machine is None else (f"machine={json.dumps(machine, ensure_ascii=False)}",)
 
 
 def text_or_json_option(text: str) -> Callable[[F], F]:
@@ -207,7 +134,6 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
     ("tolerance", "RAD_S2", "Largest Coriolis component that --method zero leaves."),
     ("iterations", click.IntRange(min=1), "Backward-forward sweeps of report-sweep."),
 )
-_GAP = "des_cli.gap"
 _REPEATABLE = ("budget", "optimise")
 _SECONDS = ("lead_in", "lead_out")
 
@@ -321,25 +247,6 @@ def without_percent(metric: str, most: str) -> str:
         return most  # the schema says what is wrong with it
 
 
-def read_stdin(sources: tuple[str, ...]) -> bytes | None:
-    """Return all of stdin if ``-`` is among the sources.
-
-    Raises
-    ------
-    click.UsageError
-        If it is there twice.
-    FileAccessError
-        If this process was started with a closed stdin.
-    """
-    if "-" not in sources:
-        return None
-    if sources.count("-") > 1:
-        raise click.UsageError("stdin ('-') can be read only once.")
-    if sys.stdin is None:
-        raise FileAccessError([Problem("stdin", "is closed")])
-    return sys.stdin.buffer.read()
-
-
 def existing_folder(path: str) -> bool:
     """Whether an argument means a folder: it is one, or ends like one."""
     return path.endswith(("/", os.sep)) or Path(path).is_dir()
@@ -349,66 +256,6 @@ def _bracketed(value: Any) -> str:
     """Write ``1,2,3`` as a list; anything else as it is."""
     text = str(value).strip()
     return f"[{text}]" if "," in text and not text.startswith("[") else text
-
-
-def _require_name(
-    context: click.Context, parameter: click.Parameter, value: str | None
-) -> str | None:
-    if value is not None and not value.strip():
-        raise click.BadParameter("is empty: name a machine or a file.")
-    return value
-
-
-def _keep_gap(context: click.Context, parameter: click.Parameter, value: str | None) -> None:
-    context.meta[_GAP] = value  # eager: it is there before the settings are read
-
-
-def _with_gap(
-    context: click.Context, parameter: click.Parameter, values: tuple[str, ...]
-) -> tuple[str, ...]:
-    """Return the settings, with what ``--gap`` says as the last one."""
-    for value in values:
-        if not value.partition("=")[0].strip() or "=" not in value:
-            raise click.BadParameter(f"{value!r} is not KEY=VALUE, such as reduction.r2=0.2.")
-    gap = context.meta.get(_GAP)
-    return values if gap is None else (*values, f"gap={gap}")
-
-
-def _read_columns(
-    context: click.Context, parameter: click.Parameter, values: tuple[str, ...]
-) -> dict[str, str]:
-    columns: dict[str, str] = {}
-    for value in values:
-        name, equals, header = value.partition("=")
-        if not name or not equals or not header:
-            raise click.BadParameter(f"{value!r} is not NAME=HEADER, such as t_s=t.")
-        if name in columns:
-            raise click.BadParameter(f"{name!r} is given twice.")
-        columns[name] = header
-    return columns
-
-
-def _read_separator(
-    context: click.Context, parameter: click.Parameter, value: str | None
-) -> str | None:
-    from des_cli.profiles_in.dialect import parse_separator
-
-    return None if value is None else _in_words(parse_separator, value)
-
-
-def _read_decimal(
-    context: click.Context, parameter: click.Parameter, value: str | None
-) -> str | None:
-    from des_cli.profiles_in.dialect import parse_decimal
-
-    return None if value is None else _in_words(parse_decimal, value)
-
-
-def _in_words(parse: Callable[[str], str], value: str) -> str:
-    try:
-        return parse(value)
-    except ValueError as error:
-        raise click.BadParameter(f"{value!r}: {error}.") from None
 
 
 def _console(context: click.Context) -> Console:

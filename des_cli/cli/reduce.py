@@ -12,14 +12,16 @@ from des_cli.cli.options import (
     DEFAULT_RUNS,
     TABLE_FORMATS,
     existing_folder,
-    machine_option,
-    machine_settings,
-    profile_argument,
-    read_stdin,
     reduction_options,
     reduction_settings,
-    setting_options,
     verbosity_options,
+)
+from des_cli.cli.source_options import (
+    machine_option,
+    profile_argument,
+    read_stdin,
+    setting_options,
+    source_job,
 )
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.summary import exit_code_of, print_closing, print_result
@@ -101,13 +103,14 @@ def reduce(
         refuse_binary_on_terminal(form)
     stdin = read_stdin(profiles)
     batch = [
-        Job(
-            source=source,
-            settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
+        source_job(
+            source,
+            (*settings, *reduction_settings(reduction)),
+            machine=machine,
+            stdin=stdin,
             columns=columns,
             separator=separator,
             decimal=decimal,
-            stdin=stdin if source == STANDARD_STREAM else None,
             out=DEFAULT_RUNS if out is None else out,
             out_is_parent=out is None or len(profiles) > 1,
             table_format=form,

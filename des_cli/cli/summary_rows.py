@@ -54,18 +54,23 @@ def changed_words(metrics: Mapping[str, Any]) -> str:
 
 def _change_numbers(step: Mapping[str, Any]) -> list[str]:
     """Return the numbers of a step that are worth telling."""
-    rate, force = (
-        read(step, key) or 0.0 for key in ("seat_rate_deviation_relative", "seat_g_rms_error_g")
+    rate, force, attitude = (
+        read(step, key) or 0.0
+        for key in ("seat_rate_deviation_relative", "seat_g_rms_error_g", "attitude_error_max_deg")
     )
-    attitude = read(step, "attitude_error_max_deg") or 0.0
-    if rate < 0.0005 and force < 0.0005 and attitude < 0.05:
-        return []
-    return [
-        f"seat rate {percent(rate)}",
-        f"G {number(force)} g rms",
-        f"attitude {number(attitude)} deg",
-        f"cross-coupling {change(read(step, 'coriolis_reduction'))}",
+    numbers = [
+        text
+        for value, least, text in (
+            (rate, 0.0005, f"seat rate {percent(rate)}"),
+            (force, 0.0005, f"G {number(force)} g rms"),
+            (attitude, 0.05, f"attitude {number(attitude)} deg"),
+        )
+        if value >= least
     ]
+    reduction = read(step, "coriolis_reduction")
+    if numbers and reduction is not None and abs(reduction) >= 0.0005:
+        numbers.append(f"cross-coupling {change(reduction)}")
+    return numbers
 
 
 def _constants(metrics: Mapping[str, Any]) -> str:

@@ -12,15 +12,12 @@ import click
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     TABLE_FORMATS,
-    machine_option,
-    machine_settings,
     read_budgets,
-    read_stdin,
     reduction_options_without,
     reduction_settings,
-    setting_options,
     verbosity_options,
 )
+from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_job
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.sweep_options import (
     DEFAULT_BUDGETS,
@@ -133,13 +130,14 @@ def sweep(
     if form != "text" and out in (None, STANDARD_STREAM):
         refuse_binary_on_terminal(form)
     _refuse_existing(out, plot, overwrite)
-    source = Job(
+    source = source_job(
         profile,
-        settings=(*machine_settings(machine), *settings),
+        settings,
+        machine=machine,
+        stdin=read_stdin((profile,)),
         columns=columns,
         separator=separator,
         decimal=decimal,
-        stdin=read_stdin((profile,)) if profile == STANDARD_STREAM else None,
     )
     points = _plan(source, reduction, swept, r2s or (), controls)
     return _run(console, points, jobs, out, form, plot, overwrite)

@@ -10,20 +10,21 @@ import click
 
 from des_cli.cli.console import Console
 from des_cli.cli.options import (
-    machine_option,
-    machine_settings,
-    profile_argument,
-    read_stdin,
     reduction_options,
     reduction_settings,
-    setting_options,
     text_or_json_option,
     verbosity_options,
+)
+from des_cli.cli.source_options import (
+    machine_option,
+    profile_argument,
+    read_stdin,
+    setting_options,
+    source_job,
 )
 from des_cli.cli.stdout import write_data
 from des_cli.errors import DesError, ExitCode
 from des_cli.failure import Failure
-from des_cli.job import STANDARD_STREAM, Job
 
 if TYPE_CHECKING:
     from des_cli.model.profile import Profile
@@ -72,13 +73,14 @@ def validate(
     codes = set()
     with console.working(len(profiles)) as line:
         jobs = split_jobs(
-            Job(
+            source_job(
                 source,
-                settings=(*machine_settings(machine), *settings, *reduction_settings(reduction)),
+                (*settings, *reduction_settings(reduction)),
+                machine=machine,
+                stdin=stdin,
                 columns=columns,
                 separator=separator,
                 decimal=decimal,
-                stdin=stdin if source == STANDARD_STREAM else None,
             )
             for source in profiles
         )

@@ -341,3 +341,24 @@ def test_nothing_binds_and_nothing_bounds():
     outcome = minimise(program, np.ones(3))
     assert outcome.status == "converged"
     np.testing.assert_allclose(outcome.x, [-0.5, -1.0, -1.5], atol=1e-6)
+
+
+def test_a_search_that_has_come_to_rest_ends():
+    # of terms of a million that cancel, a gradient has a rounding of 1e-10 and no less
+    c, big = np.array([3.0, -4.0]), 1e6
+    smooth = quadratic(np.eye(2), -c)
+    rounded = Function(
+        smooth.value,
+        lambda x: (smooth.gradient(x) + big * np.array([1.0, -1.0])) - big * np.array([1.0, -1.0]),
+        smooth.hessian,
+    )
+    program = boxed(rounded, 10.0, 2, budgets=(disc(np.zeros(2), 0.7),))
+    start = np.array([0.1, 0.0])
+    floor = minimise(program, start, Options(tolerance=1e-30, max_iterations=80)).steps
+    least = min(step.optimality for step in floor[-40:])
+    assert least > 0.0
+    ended = minimise(program, start, Options(tolerance=least / 3.0, max_iterations=400))
+    assert ended.status == "converged"
+    assert len(ended.steps) < 200
+    far = minimise(program, start, Options(tolerance=least / 1000.0, max_iterations=80))
+    assert far.status != "converged"

@@ -1,0 +1,196 @@
+"""Options that say what a command reads and how: the profile, its machine, its columns."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+from des_cli.cli.conditioning_options import conditioning_options
+from des_cli.errors import FileAccessError, Problem
+from des_cli.job import STANDARD_STREAM, Job
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_GAP = "des_cli.gap"
+
+
+def profile_argument(command: F) -> F:
+    """Add ``PROFILE...``."""
+    return click.argument("profiles", metavar="PROFILE...", nargs=-1, required=True)(command)
+
+
+def setting_options(command: F) -> F:
+    """Add the options that change how a profile is read, such as ``--set`` and ``--trim``.
+
+    ``--gap`` comes to the command as a setting; its own value is not passed.
+    """
+    settings = click.option(
+        "--set",
+        "settings",
+        metavar="KEY=VALUE",
+        multiple=True,
+        callback=_with_gap,
+        help="Override a key of the profile by its path, such as reduction.r2=0.2; repeatable.",
+    )
+    columns = click.option(
+        "--column",
+        "columns",
+        metavar="NAME=HEADER",
+        multiple=True,
+        callback=_read_columns,
+        help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
+    )
+    gap = click.option(
+        "--gap",
+        type=click.Choice(["refuse", "bridge", "split"]),
+        is_eager=True,
+        expose_value=False,
+        callback=_keep_gap,
+        help="Where samples are missing: refuse, interpolate, or make a profile of each stretch.  "
+        "[default: bridge up to 0.5 s]",
+    )
+    separator = click.option(
+        "--separator",
+        metavar="SIGN",
+        callback=_read_separator,
+        help="What stands between the columns of a CSV profile: ',', ';', '|', tab or space.",
+    )
+    decimal = click.option(
+        "--decimal",
+        metavar="SIGN",
+        callback=_read_decimal,
+        help="The decimal sign of a CSV profile: '.' or ','.",
+    )
+    return settings(columns(separator(decimal(gap(conditioning_options(command))))))
+
+
+def machine_option(command: F) -> F:
+    """Add ``--machine``, which names another machine than the profile's."""
+    return click.option(
+        "--machine",
+        metavar="NAME|FILE",
+        callback=_require_name,
+        help="A built-in machine or a YAML file, instead of the profile's.  [default: des]",
+    )(command)
+
+
+def machine_settings(machine: str | None) -> tuple[str, ...]:
+    """Turn ``--machine`` into a setting, which stands before those that change the machine.
+
+    >>> machine_settings("my machine.yaml")
+    ('machine="my machine.yaml"',)
+    """
+    return () if machine is None else (f"machine={json.dumps(machine, ensure_ascii=False)}",)
+
+
+def source_job(
+    source: str,
+    settings: tuple[str, ...],
+    *,
+    machine: str | None,
+    stdin: bytes | None,
+    **read: Any,
+) -> Job:
+    """Return a job that reads a profile as the options of `setting_options` say.
+
+    Parameters
+    ----------
+    source : str
+    settings : tuple of str
+        Of ``--set`` and what comes to the command among them.
+    machine : str, optional
+        Of ``--machine``, which stands before the settings that change a machine.
+    stdin : bytes, optional
+        What `read_stdin` found, of all sources.
+    **read
+        Values of ``--column``, ``--separator`` and ``--decimal``.
+    """
+    return Job(
+        source,
+        settings=(*machine_settings(machine), *settings),
+        stdin=stdin if source == STANDARD_STREAM else None,
+        **read,
+    )
+
+
+def read_stdin(sources: tuple[str, ...]) -> bytes | None:
+    """Return all of stdin if ``-`` is among the sources.
+
+    Raises
+    ------
+    click.UsageError
+        If it is there twice.
+    FileAccessError
+        If this process was started with a closed stdin.
+    """
+    if "-" not in sources:
+        return None
+    if sources.count("-") > 1:
+        raise click.UsageError("stdin ('-') can be read only once.")
+    if sys.stdin is None:
+        raise FileAccessError([Problem("stdin", "is closed")])
+    return sys.stdin.buffer.read()
+
+
+def _require_name(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> str | None:
+    if value is not None and not value.strip():
+        raise click.BadParameter("is empty: name a machine or a file.")
+    return value
+
+
+def _keep_gap(context: click.Context, parameter: click.Parameter, value: str | None) -> None:
+    context.meta[_GAP] = value  # eager: it is there before the settings are read
+
+
+def _with_gap(
+    context: click.Context, parameter: click.Parameter, values: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Return the settings, with what ``--gap`` says as the last one."""
+    for value in values:
+        if not value.partition("=")[0].strip() or "=" not in value:
+            raise click.BadParameter(f"{value!r} is not KEY=VALUE, such as reduction.r2=0.2.")
+    gap = context.meta.get(_GAP)
+    return values if gap is None else (*values, f"gap={gap}")
+
+
+def _read_columns(
+    context: click.Context, parameter: click.Parameter, values: tuple[str, ...]
+) -> dict[str, str]:
+    columns: dict[str, str] = {}
+    for value in values:
+        name, equals, header = value.partition("=")
+        if not name or not equals or not header:
+            raise click.BadParameter(f"{value!r} is not NAME=HEADER, such as t_s=t.")
+        if name in columns:
+            raise click.BadParameter(f"{name!r} is given twice.")
+        columns[name] = header
+    return columns
+
+
+def _read_separator(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> str | None:
+    from des_cli.profiles_in.dialect import parse_separator
+
+    return None if value is None else _in_words(parse_separator, value)
+
+
+def _read_decimal(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> str | None:
+    from des_cli.profiles_in.dialect import parse_decimal
+
+    return None if value is None else _in_words(parse_decimal, value)
+
+
+def _in_words(parse: Callable[[str], str], value: str) -> str:
+    try:
+        return parse(value)
+    except ValueError as error:
+        raise click.BadParameter(f"{value!r}: {error}.") from None
