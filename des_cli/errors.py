@@ -1,11 +1,12 @@
 """One error tree: each class knows its exit code and carries what explains it.
 
-The command line maps an error to its exit code and prints its lines; nothing
-else in the project decides how a failure ends.
+How any exception ends, its exit code and its lines, is decided here and nowhere else:
+for a command, and for one profile of many.
 """
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
@@ -26,7 +27,7 @@ class ExitCode(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class Complaint:
     """One thing that is wrong, in words for the person who can mend it.
 
     Parameters
@@ -50,24 +51,24 @@ class DesError(Exception):
 
     Parameters
     ----------
-    problems : sequence of Problem
+    complaints : sequence of Complaint
         All of them, one line each.
     """
 
     exit_code = ExitCode.BUG
 
-    def __init__(self, problems: Sequence[Problem]) -> None:
-        self.problems = tuple(problems)
-        super().__init__("\n".join(str(problem) for problem in self.problems))
+    def __init__(self, complaints: Sequence[Complaint]) -> None:
+        self.complaints = tuple(complaints)
+        super().__init__("\n".join(str(complaint) for complaint in self.complaints))
 
     @classmethod
     def of(cls, what: str, where: str = "") -> DesError:
-        """Make an error of a single problem."""
-        return cls([Problem(where, what)])
+        """Make an error of a single complaint."""
+        return cls([Complaint(where, what)])
 
-    def __reduce__(self) -> tuple[type[DesError], tuple[tuple[Problem, ...]]]:
-        """Let an error cross a process boundary with its problems."""
-        return type(self), (self.problems,)
+    def __reduce__(self) -> tuple[type[DesError], tuple[tuple[Complaint, ...]]]:
+        """Let an error cross a process boundary with its complaints."""
+        return type(self), (self.complaints,)
 
 
 class FileAccessError(DesError):
@@ -98,3 +99,53 @@ class NotReleasedError(DesError):
     """A solution exists, but its verification or a limit failed."""
 
     exit_code = ExitCode.NOT_RELEASED
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """The end of something that did not end well.
+
+    Parameters
+    ----------
+    exit_code : ExitCode
+    lines : tuple of str
+        One problem each, for a person.
+    traceback : str
+        For the developers; empty for an error that the user can mend.
+    """
+
+    exit_code: ExitCode
+    lines: tuple[str, ...]
+    traceback: str = ""
+
+    @classmethod
+    def of(cls, error: BaseException) -> Failure:
+        """Say how an exception ends.
+
+        Parameters
+        ----------
+        error : BaseException
+            An error of the project's own tree, one of the operating system, an
+            interruption, or anything unexpected, which is a bug.
+        """
+        match error:
+            case DesError():
+                return cls(error.exit_code, tuple(str(complaint) for complaint in error.complaints))
+            case KeyboardInterrupt():
+                return cls(ExitCode.INTERRUPTED, ("interrupted",))
+            case BrokenPipeError():
+                # Nobody is left who reads: no words.
+                return cls(ExitCode.READER_GONE, ())
+            case OSError():
+                return cls(ExitCode.FILE, (_operating_system_line(error),))
+            case MemoryError():
+                return cls(ExitCode.FILE, ("not enough memory; use fewer samples or fewer --jobs",))
+        first_line = (str(error).splitlines() or [""])[0]
+        text = f"bug: {type(error).__name__}: {first_line}".rstrip(": ")
+        return cls(ExitCode.BUG, (text,), "".join(traceback.format_exception(error)))
+
+
+def _operating_system_line(error: OSError) -> str:
+    what = error.strerror or str(error) or type(error).__name__
+    where = error.filename
+    return f"{where}: {what}" if isinstance(where, str) else what

@@ -9,19 +9,19 @@ from dataclasses import replace
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond, respond_as_asked
 from des_cli.kinematics.smoothing import smooth_command
-from des_cli.metrics import Measured, measure
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Check, Run
 from des_cli.model.solution import Iteration
 from des_cli.model.stage import OnStage, untold
-from des_cli.notices import find_notices
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.consistency import require_consistent
 from des_cli.reduction.desired import find_desired
 from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion
+from des_cli.results.metrics import Measured, measure
+from des_cli.results.notices import find_notices
 from des_cli.verify.claim import Claim
 from des_cli.verify.verify import verify
 

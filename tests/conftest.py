@@ -8,10 +8,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import settings
 
 import des_cli
 from des_cli.model.run import Run
 from tests.support.runs import make_run
+
+# The same examples in every run, so that a check fails for a change and for nothing else;
+# HYPOTHESIS_PROFILE=searching looks for new ones.
+settings.register_profile("repeatable", deadline=None, derandomize=True)
+settings.register_profile("searching", deadline=None, print_blob=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 
 Command = Callable[..., subprocess.CompletedProcess[bytes]]
 

@@ -15,14 +15,14 @@ LAYERS = (
     ("kinematics",),
     ("solver", "study"),
     ("reduction",),
-    ("verify",),
-    ("results", "metrics", "notices", "pipeline", "tradeoff"),
-    ("profiles_in", "runs_out", "plots", "report"),
-    ("failure", "job", "pool", "batch", "sweep"),
+    ("verify", "results"),
+    ("pipeline",),
+    ("profiles_in", "runs_out", "show"),
+    ("batch", "tradeoff"),
     ("cli", "__main__"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
-CORE = LEVEL["metrics"]
+CORE = LEVEL["pipeline"]
 OUTSIDE = {"io", "logging", "os", "pathlib", "shutil", "subprocess", "sys", "tempfile"}
 TOUCHING = {"open", "print", "input"}
 MODULES = sorted(ROOT.rglob("*.py"))

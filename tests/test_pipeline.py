@@ -81,7 +81,7 @@ def test_a_solver_that_did_not_converge_is_not_released():
     with pytest.raises(NoSolutionError) as caught:
         run.require_release()
     assert caught.value.exit_code == ExitCode.NO_SOLUTION
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.complaints
     assert problem.where == "cobra"
     assert problem.what.startswith("iteration-limit: ")
     assert "max_iterations" in problem.what
@@ -100,8 +100,8 @@ def test_limits_under_check_are_all_named_at_once():
     with pytest.raises(NotReleasedError) as caught:
         run.require_release()
     assert caught.value.exit_code == ExitCode.NOT_RELEASED
-    assert [problem.what for problem in caught.value.problems] == broken
-    assert all(problem.where == "cobra" for problem in caught.value.problems)
+    assert [problem.what for problem in caught.value.complaints] == broken
+    assert all(problem.where == "cobra" for problem in caught.value.complaints)
 
 
 def test_limits_under_enforce_are_kept():
@@ -199,7 +199,7 @@ def test_a_failed_verification_is_not_released_whatever_the_limits_say(run):
     )
     with pytest.raises(NotReleasedError) as caught:
         replace(run, checks=checks).require_release()
-    first, second = caught.value.problems
+    first, second = caught.value.complaints
     assert "verification failed: gap of something is 0.002, tolerance 1e-09" in first.what
     assert "count is nan" in second.what
 
@@ -255,7 +255,7 @@ def test_what_excludes_something_else_is_refused_all_at_once():
     with pytest.raises(UsageError) as caught:
         reduce_profile(cobra(algorithm="report-sweep", limits="enforce", hold=frozenset({"arm"})))
     assert caught.value.exit_code == ExitCode.USAGE
-    whats = [problem.what for problem in caught.value.problems]
+    whats = [problem.what for problem in caught.value.complaints]
     assert len(whats) == 2
     assert "--limits warn" in whats[0]
     assert "per-joint" in whats[1]

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from des_cli.cli.status_line import StatusLine
-from des_cli.errors import ExitCode
-from des_cli.failure import Failure
+from des_cli.errors import ExitCode, Failure
 
 if TYPE_CHECKING:
     from des_cli.model.solution import Iteration

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
+from des_cli.batch.job import Job, TableFormat
 from des_cli.cli.options import TABLE_FORMATS, verbosity_options
 from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_job
 from des_cli.cli.state_options import in_si, option_name, state_options
 from des_cli.cli.stdout import write_data
-from des_cli.job import Job, TableFormat
 from des_cli.model.machine import JOINTS, Seat
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ def _state(si: Mapping[tuple[str, str], float], choice: str, form: str) -> bytes
 
 def _motion(source: Job, form: str) -> bytes | str:
     """Return the kinematics of a profile's desired motion."""
-    from des_cli.batch import load_job
+    from des_cli.batch.runner import load_job
     from des_cli.cli.state_text import motion_text
     from des_cli.reduction.desired import find_desired
     from des_cli.runs_out.state_tables import encode_states

@@ -7,6 +7,7 @@ from typing import Any, NoReturn, cast
 
 import click
 
+from des_cli.batch.job import STANDARD_STREAM, Job, TableFormat
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     DEFAULT_RUNS,
@@ -26,7 +27,6 @@ from des_cli.cli.source_options import (
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.summary import exit_code_of, print_closing, print_result
 from des_cli.errors import ExitCode
-from des_cli.job import STANDARD_STREAM, Job, TableFormat
 
 
 @click.command(
@@ -126,8 +126,8 @@ def reduce(
 
 def _with_parts(batch: list[Job]) -> list[Job]:
     """Return a job for each stretch of a record that is split at its gaps."""
-    from des_cli.batch import split_jobs
-    from des_cli.pool import single_blas_thread
+    from des_cli.batch.pool import single_blas_thread
+    from des_cli.batch.runner import split_jobs
 
     with single_blas_thread():  # numpy may be imported here
         parts = split_jobs(batch)
@@ -137,8 +137,8 @@ def _with_parts(batch: list[Job]) -> list[Job]:
 
 
 def _run(console: Console, batch: list[Job], jobs: int, keep_going: bool) -> ExitCode:
-    from des_cli.batch import require_distinct_names, run_jobs
-    from des_cli.pool import local_executor
+    from des_cli.batch.pool import local_executor
+    from des_cli.batch.runner import require_distinct_names, run_jobs
 
     workers = min(jobs, len(batch)) if jobs else jobs
     alone = len(batch) == 1

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
+from des_cli.batch.job import STANDARD_STREAM
 from des_cli.cli.console import Console
 from des_cli.cli.options import DEFAULT_RUNS, verbosity_options
 from des_cli.cli.stdout import write_data
-from des_cli.errors import DesError, FileAccessError, Problem
-from des_cli.job import STANDARD_STREAM
+from des_cli.errors import Complaint, DesError, FileAccessError
 
 
 @click.command(
@@ -38,21 +38,21 @@ def report(console: Console, runs: tuple[str, ...], out: str) -> None:
     A RUN is a run folder, or a folder of run folders. The page needs no
     network and no other file.
     """
-    from des_cli.report.page import render_report
     from des_cli.runs_out.atomic import write_file
     from des_cli.runs_out.run_folder import StoredRun, read_run
+    from des_cli.show.page.page import render_report
 
     stored: list[StoredRun] = []
-    problems: list[Problem] = []
+    complaints: list[Complaint] = []
     with console.working() as line:
         line.stage("reading runs")
         for folder in _run_folders(runs or (DEFAULT_RUNS,)):
             try:
                 stored.append(read_run(folder))
             except DesError as error:
-                problems += error.problems
-        if problems:
-            raise FileAccessError(problems)
+                complaints += error.complaints
+        if complaints:
+            raise FileAccessError(complaints)
         line.stage("page")
         page = render_report(stored)
     if out == STANDARD_STREAM:
@@ -74,7 +74,7 @@ def _run_folders(named: tuple[str, ...]) -> list[Path]:
     from des_cli.runs_out.manifest import is_run
 
     folders: dict[Path, None] = {}
-    problems = []
+    complaints = []
     for name in named:
         folder = Path(name)
         if is_run(folder):
@@ -86,8 +86,8 @@ def _run_folders(named: tuple[str, ...]) -> list[Path]:
             what = "holds no run; make one with: des-coriolis reduce cobra"
             if not folder.exists():
                 what = "does not exist; make a run with: des-coriolis reduce cobra"
-            problems.append(Problem(name, what))
+            complaints.append(Complaint(name, what))
         folders |= dict.fromkeys(found)
-    if problems:
-        raise FileAccessError(problems)
+    if complaints:
+        raise FileAccessError(complaints)
     return list(folders)

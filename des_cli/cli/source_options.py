@@ -9,9 +9,9 @@ from typing import Any, TypeVar
 
 import click
 
+from des_cli.batch.job import STANDARD_STREAM, Job
 from des_cli.cli.conditioning_options import conditioning_options
-from des_cli.errors import FileAccessError, Problem
-from des_cli.job import STANDARD_STREAM, Job
+from des_cli.errors import Complaint, FileAccessError
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -132,7 +132,7 @@ def read_stdin(sources: tuple[str, ...]) -> bytes | None:
     if sources.count("-") > 1:
         raise click.UsageError("stdin ('-') can be read only once.")
     if sys.stdin is None:
-        raise FileAccessError([Problem("stdin", "is closed")])
+        raise FileAccessError([Complaint("stdin", "is closed")])
     return sys.stdin.buffer.read()
 
 

@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from des_cli.errors import FileAccessError, Problem
+from des_cli.errors import Complaint, FileAccessError
 
 
 def write_data(data: bytes | str) -> None:
@@ -20,7 +20,7 @@ def write_data(data: bytes | str) -> None:
         If the data cannot be written.
     """
     if sys.stdout is None:
-        raise FileAccessError([Problem("stdout", "is closed")])
+        raise FileAccessError([Complaint("stdout", "is closed")])
     stream = sys.stdout.buffer
     rest = memoryview(data.encode() if isinstance(data, str) else data)
     while rest:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from des_cli.batch.job import JobResult
 from des_cli.cli.console import Console
 from des_cli.cli.summary_rows import (
     changes,
@@ -11,9 +12,7 @@ from des_cli.cli.summary_rows import (
     percent,
     summary_rows,
 )
-from des_cli.errors import ExitCode
-from des_cli.failure import Failure
-from des_cli.job import JobResult
+from des_cli.errors import ExitCode, Failure
 from des_cli.results.reading import number as read
 from des_cli.results.worse import worse_words
 
@@ -32,7 +31,7 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
         everything that needs attention below it.
     """
     if result.exit_code:
-        failure = Failure(result.exit_code, result.problems, result.traceback)
+        failure = Failure(result.exit_code, result.complaints, result.traceback)
         console.failure(failure)
         console.warn(result.notices)
         return

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, get_args
 
-from des_cli.job import JobResult
+from des_cli.batch.job import JobResult
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
 from des_cli.results.budgets import spent_budgets

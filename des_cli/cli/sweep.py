@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
+from des_cli.batch.job import STANDARD_STREAM, Job, TableFormat
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     TABLE_FORMATS,
@@ -28,13 +29,12 @@ from des_cli.cli.sweep_options import (
     read_swept_budgets,
     read_weights,
 )
-from des_cli.errors import ExitCode, FileAccessError, Problem
-from des_cli.job import STANDARD_STREAM, Job, TableFormat
+from des_cli.errors import Complaint, ExitCode, FileAccessError
 
 if TYPE_CHECKING:
     from des_cli.model.profile import Control, Profile
     from des_cli.model.tradeoff import TradePoint
-    from des_cli.sweep import PointJob, PointResult
+    from des_cli.tradeoff.jobs import PointJob, PointResult
 
 
 @click.command(
@@ -153,7 +153,7 @@ def _plan(
     """Return a job for each point, over budgets or else over r2, and one for the baselines."""
     from dataclasses import replace
 
-    from des_cli.sweep import PointJob
+    from des_cli.tradeoff.jobs import PointJob
 
     swept, values = budgets or ("r2", r2s)
     base = reduction
@@ -186,8 +186,8 @@ def _run(
     plot: str | None,
     overwrite: bool,
 ) -> ExitCode:
-    from des_cli.pool import local_executor
-    from des_cli.sweep import check_points, exit_code_of, run_points
+    from des_cli.batch.pool import local_executor
+    from des_cli.tradeoff.jobs import check_points, exit_code_of, run_points
 
     results = []
     with (
@@ -203,14 +203,14 @@ def _run(
             line.advance()
             _tell(console, result, live)
     points = [point for result in results for point in result.points]
-    from des_cli.tradeoff import doubts
+    from des_cli.tradeoff.point import doubts
 
     console.warn(doubts(points))
     about = f"{profile.name}, {_objective(profile)}"
     _write(points, about, out, form, overwrite)
     if plot is not None:
-        from des_cli.plots import draw_tradeoff
         from des_cli.runs_out.atomic import write_file
+        from des_cli.show.plots import draw_tradeoff
 
         write_file(plot, draw_tradeoff(points, about), overwrite=overwrite)
     return exit_code_of(results)
@@ -291,16 +291,16 @@ def _refuse_existing(out: str | None, plot: str | None, overwrite: bool) -> None
     """Refuse before solving what would be refused when writing."""
     if plot is not None and Path(plot).suffix.lower() != ".png":
         raise click.UsageError(f"--plot draws a PNG: name it FILE.png, not {plot}.")
-    problems = []
+    complaints = []
     for name in (out, plot):
         if name is None or name == STANDARD_STREAM:
             continue
         path = Path(name)
         if path.is_dir():
-            problems.append(Problem(name, "is a folder; name a file"))
+            complaints.append(Complaint(name, "is a folder; name a file"))
         elif not path.parent.is_dir():
-            problems.append(Problem(name, "cannot be written: its folder does not exist"))
+            complaints.append(Complaint(name, "cannot be written: its folder does not exist"))
         elif path.is_file() and not overwrite:
-            problems.append(Problem(name, "exists; --overwrite replaces it"))
-    if problems:
-        raise FileAccessError(problems)
+            complaints.append(Complaint(name, "exists; --overwrite replaces it"))
+    if complaints:
+        raise FileAccessError(complaints)

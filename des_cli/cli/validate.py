@@ -23,8 +23,7 @@ from des_cli.cli.source_options import (
     source_job,
 )
 from des_cli.cli.stdout import write_data
-from des_cli.errors import DesError, ExitCode
-from des_cli.failure import Failure
+from des_cli.errors import DesError, ExitCode, Failure
 
 if TYPE_CHECKING:
     from des_cli.model.profile import Profile
@@ -66,7 +65,7 @@ def validate(
     profile is rejected, 2 if its reduction asks for what excludes each other,
     1 if a file cannot be read.
     """
-    from des_cli.batch import load_job, split_jobs
+    from des_cli.batch.runner import load_job, split_jobs
     from des_cli.reduction.consistency import require_consistent
 
     stdin = read_stdin(profiles)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
 
-from des_cli.errors import NoSolutionError, NotReleasedError, Problem
+from des_cli.errors import Complaint, NoSolutionError, NotReleasedError
 from des_cli.model.machine import Joint, Seat
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
@@ -167,13 +167,13 @@ class Run:
         """
         name = self.profile.name
         if self.solution.status == "changed":
-            raise NotReleasedError([Problem(name, self.solution.message)])
+            raise NotReleasedError([Complaint(name, self.solution.message)])
         if not self.solution.usable:
             raise NoSolutionError(
-                [Problem(name, f"{self.solution.status}: {self.solution.message}")]
+                [Complaint(name, f"{self.solution.status}: {self.solution.message}")]
             )
-        problems = [
-            Problem(
+        complaints = [
+            Complaint(
                 name,
                 f"verification failed: {check.name} is {check.value:.3g}, "
                 f"tolerance {check.tolerance:.3g}",
@@ -182,10 +182,10 @@ class Run:
             if not check.ok
         ]
         if self.profile.reduction.limits != "warn":
-            problems += [
-                Problem(name, str(violation))
+            complaints += [
+                Complaint(name, str(violation))
                 for violation in self.violations
                 if violation.motion == "modified"
             ]
-        if problems:
-            raise NotReleasedError(problems)
+        if complaints:
+            raise NotReleasedError(complaints)

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from des_cli.errors import Problem, ProfileError
+from des_cli.errors import Complaint, ProfileError
 from des_cli.kinematics.attitude_rates import LARGEST_TURN, rates_of_attitude, turns_between
 from des_cli.model.arrays import Floats, Indices
 from des_cli.model.profile import BodyRates
@@ -30,7 +30,7 @@ def with_quaternions(
     euler: EulerOrder | None,
     header: Header,
     line: Place,
-    problems: list[Problem],
+    complaints: list[Complaint],
 ) -> dict[str, Floats]:
     """Return a record whose attitude, if it has one, is unit quaternions.
 
@@ -45,18 +45,18 @@ def with_quaternions(
         Of the file, for places.
     line : callable
         From a row of the record to its line.
-    problems : list of Problem
+    complaints : list of Complaint
         Takes what is wrong.
     """
     rest = {stem: column for stem, column in record.items() if stem not in EULER}
     if EULER[0] in record:
         if euler is None:
-            problems.append(Problem(header.where, _without_order()))
+            complaints.append(Complaint(header.where, _without_order()))
             return rest
         attitude = _of_euler(np.column_stack([record[stem] for stem in EULER]), euler)
     elif QUATERNION[0] in record:
         recorded = np.column_stack([record[name] for name in QUATERNION])
-        attitude = _normalised(recorded, header.label, line, problems)
+        attitude = _normalised(recorded, header.label, line, complaints)
     else:
         return rest
     return rest | {stem: attitude[:, k] for k, stem in enumerate(QUATERNION)}
@@ -83,13 +83,13 @@ def _of_euler(angles: Floats, order: EulerOrder) -> Floats:
     return found
 
 
-def _normalised(recorded: Floats, label: str, line: Place, problems: list[Problem]) -> Floats:
+def _normalised(recorded: Floats, label: str, line: Place, complaints: list[Complaint]) -> Floats:
     norm = np.sqrt(np.sum(recorded**2, axis=1))
     wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_NORM)
     if len(wrong):
         first = int(wrong[0])
-        problems.append(
-            Problem(
+        complaints.append(
+            Complaint(
                 f"{label}:{line(first)}",
                 f"q0..q3: the attitude's norm is {norm[first]:.6g}, not 1 "
                 f"({len(wrong)} such row{'s' * (len(wrong) > 1)})",
@@ -119,7 +119,7 @@ def rows_with_attitude(record: Mapping[str, Floats], label: str, remarks: list[s
     rows = np.flatnonzero(np.all(np.isfinite(attitude), axis=1))
     if len(rows) < 2:
         what = f"has an attitude in {len(rows)} of {len(attitude)} rows, two are needed"
-        raise ProfileError([Problem(label, what)])
+        raise ProfileError([Complaint(label, what)])
     if lacking := len(attitude) - len(rows):
         remarks.append(f"{lacking} of {len(attitude)} rows have no attitude and were left out")
     t, turn = record["t"][rows], turns_between(attitude[rows])
@@ -130,7 +130,7 @@ def rows_with_attitude(record: Mapping[str, Floats], label: str, remarks: list[s
             f"{t[k + 1]:.6g} s ({len(wide)} such step{'s' * (len(wide) > 1)}): beyond "
             f"{math.degrees(LARGEST_TURN):.0f}° a record does not tell which way; record more often"
         )
-        raise ProfileError([Problem(label, what)])
+        raise ProfileError([Complaint(label, what)])
     return rows
 
 

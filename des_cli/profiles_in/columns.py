@@ -4,8 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from des_cli.errors import Problem
+from des_cli.errors import Complaint
 from des_cli.profiles_in.clock import is_clock
+from des_cli.profiles_in.column_complaints import (
+    check_missing,
+    misspelt,
+    nothing_to_fly,
+    repeated,
+    several_kinds,
+    some,
+    unusable,
+)
 from des_cli.profiles_in.column_kinds import (
     ALIASES,
     ASKED_G,
@@ -22,15 +31,6 @@ from des_cli.profiles_in.column_kinds import (
     Said,
     first_said,
 )
-from des_cli.profiles_in.column_problems import (
-    check_missing,
-    misspelt,
-    nothing_to_fly,
-    repeated,
-    several_kinds,
-    some,
-    unusable,
-)
 from des_cli.profiles_in.csv_header import Header
 from des_cli.profiles_in.unit_spelling import HeaderName, read_name, unit_of
 from des_cli.profiles_in.wording import did_you_mean, plain
@@ -40,7 +40,7 @@ from des_cli.units import split_unit
 def choose_columns(
     header: Header,
     named: Mapping[str, str],
-    problems: list[Problem],
+    complaints: list[Complaint],
     remarks: list[str],
     *,
     euler: bool = False,
@@ -53,7 +53,7 @@ def choose_columns(
     named : mapping of str to str
         Our name to the name in the file, as asked for. They go before names of
         the contract (``p_rad_s``), and these before other spellings (``P (deg/s)``).
-    problems, remarks : list
+    complaints, remarks : list
         Take what is wrong, and what was done.
     euler : bool
         Whether the order of roll, pitch and yaw is known; without it they are not
@@ -63,15 +63,15 @@ def choose_columns(
     -------
     list of Column
         Times, one kind of commands, and what is complete beside them, in the order
-        of the file; incomplete where there are problems.
+        of the file; incomplete where there are complaints.
     """
-    found = [*_named(header, named, problems, remarks), *_recognised(header, named)]
-    if problems:
+    found = [*_named(header, named, complaints, remarks), *_recognised(header, named)]
+    if complaints:
         return []
     kinds = _kinds(header, found)
     if len(kinds) != 1:
         what = several_kinds(kinds, found) if kinds else nothing_to_fly(header)
-        problems.append(Problem(header.where, what))
+        complaints.append(Complaint(header.where, what))
         return []
     kind = kinds[0]
     chosen = []
@@ -79,11 +79,11 @@ def choose_columns(
         same = first_said(found, stem)
         chosen += same[:1]
         if len(same) > 1:
-            problems.append(Problem(header.where, repeated(stem, same)))
-    check_missing(header, kind, found, problems)
+            complaints.append(Complaint(header.where, repeated(stem, same)))
+    check_missing(header, kind, found, complaints)
     chosen += _beside(kind, found, euler=euler)
     for column in chosen:
-        _check_units(header, column, problems, remarks)
+        _check_units(header, column, complaints, remarks)
     if not set(kind.stems) <= {read_name(name).stem for name in named}:
         _tell_unread(header, chosen, remarks)
     return sorted(chosen, key=lambda column: column.place)
@@ -102,7 +102,7 @@ def _beside(kind: Kind, found: Sequence[Column], *, euler: bool) -> list[Column]
 
 
 def _named(
-    header: Header, named: Mapping[str, str], problems: list[Problem], remarks: list[str]
+    header: Header, named: Mapping[str, str], complaints: list[Complaint], remarks: list[str]
 ) -> list[Column]:
     """Return the columns that the user names."""
     found = []
@@ -113,16 +113,16 @@ def _named(
         if not count:
             same_unit = [other for other in header.names if _units_agree(other, in_file)]
             hint = did_you_mean(in_file, same_unit) or f"; there are {some(header.names)}"
-            problems.append(Problem(where, f"the file has no column {plain(in_file)}{hint}"))
+            complaints.append(Complaint(where, f"the file has no column {plain(in_file)}{hint}"))
             continue
         if count > 1:
-            problems.append(Problem(where, f"the column {plain(in_file)} stands {count} times"))
+            complaints.append(Complaint(where, f"the column {plain(in_file)} stands {count} times"))
         elif list(named.values()).count(in_file) > 1:
-            problems.append(Problem(where, f"the column {plain(in_file)} is named twice"))
+            complaints.append(Complaint(where, f"the column {plain(in_file)} is named twice"))
         if own.stem not in QUANTITIES:
             known = [stem + name[len(own.stem) :] for stem in QUANTITIES]
             hint = did_you_mean(name, known)
-            problems.append(Problem(where, f"the name {plain(name)} is not known{hint}"))
+            complaints.append(Complaint(where, f"the name {plain(name)} is not known{hint}"))
             continue
         column = _column(header, header.names.index(in_file), own, Said.BY_USER, name)
         if not own.unit_text and theirs.unit_text and column.unit is None:
@@ -131,7 +131,7 @@ def _named(
             words = f"{plain(in_file)} is read in {own.unit.suffix}, as {plain(name)} says"
             remarks.append(f"{words}, and not in {theirs.unit.suffix}")
         if not column.usable:
-            problems.append(Problem(where, unusable(column)))
+            complaints.append(Complaint(where, unusable(column)))
         found.append(column)
     return found
 
@@ -224,7 +224,7 @@ def _begun(header: Header, found: Sequence[Column], meant: set[str]) -> list[Kin
 
 
 def _check_units(
-    header: Header, column: Column, problems: list[Problem], remarks: list[str]
+    header: Header, column: Column, complaints: list[Complaint], remarks: list[str]
 ) -> None:
     """Say where the row of units contradicts the name of a column."""
     below = unit_of(header.units[column.place]) if header.units else None
@@ -238,7 +238,7 @@ def _check_units(
         remarks.append(f"{own}, and {says}")
     else:
         what = f"the column {plain(column.in_file)} is in {column.unit.suffix}, but {says}"
-        problems.append(Problem(header.where, f"{what}; correct one of them"))
+        complaints.append(Complaint(header.where, f"{what}; correct one of them"))
 
 
 def _tell_unread(header: Header, chosen: Sequence[Column], remarks: list[str]) -> None:

@@ -57,11 +57,11 @@ def read_time(
         What those are that are not given [s]; without it each must be.
     """
     default = default or {}
-    known = len(findings.problems)
+    known = len(findings.complaints)
     for measure in section.measures:
         if section.given(measure.stem) is None and measure.stem not in default:
             findings.add(["time"], f"{measure.title} is missing: give {one_of(measure.keys)}")
-    if len(findings.problems) > known:
+    if len(findings.complaints) > known:
         return None
     start, stop, step = (section.si(stem, default.get(stem, 0.0)) for stem in _GRID)
     if not stop > start:
@@ -70,7 +70,7 @@ def read_time(
         findings.add(["time", *([given] if given else [])], f"must be greater than {least}")
     if not step > 0:
         findings.add(["time", str(section.given_key("step"))], "must be greater than 0")
-    if len(findings.problems) > known:
+    if len(findings.complaints) > known:
         return None
     if count_samples(start, stop, step) > MAX_SAMPLES:
         path = ["time", str(section.given_key("step"))]
@@ -174,7 +174,7 @@ def covers(
     findings: Findings,
 ) -> bool:
     """Tell whether segments reach from the start to the stop; say where they do not."""
-    known = len(findings.problems)
+    known = len(findings.complaints)
     start, stop, _ = time
     first, last = pieces[0], pieces[-1]
     slack = _COVER_TOLERANCE * max(1.0, abs(start), abs(stop))
@@ -188,7 +188,7 @@ def covers(
             [*path, len(pieces) - 1],
             f"ends at {last.stop:.12g} s and leaves the time to {stop:.12g} s uncovered",
         )
-    return len(findings.problems) == known
+    return len(findings.complaints) == known
 
 
 def _sides(
@@ -231,7 +231,7 @@ def _sample_joints(
                 "no joint can follow: make both sides equal there",
             )
     arm, *both = (found.get(stem) for stem in ("arm", "fork", "cab"))
-    if arm is None or not all(both) or findings.problems:
+    if arm is None or not all(both) or findings.complaints:
         return None
     by_angle = "arm" in angles
     return JointCommands(

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from des_cli.errors import Problem, ProfileError
+from des_cli.errors import Complaint, ProfileError
 from des_cli.kinematics.attitude import quaternion_product
 from des_cli.kinematics.smoothing import why_not_smooth
 from des_cli.model.arrays import Floats, Indices
@@ -249,4 +249,4 @@ def _columns(record: Mapping[str, Floats], stems: Sequence[str]) -> Floats:
 
 
 def _refused(label: str, key: str, what: str) -> ProfileError:
-    return ProfileError([Problem(f"{label}: {key}", what)])
+    return ProfileError([Complaint(f"{label}: {key}", what)])

@@ -8,7 +8,7 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
-from des_cli.errors import Problem, ProfileError
+from des_cli.errors import Complaint, ProfileError
 from des_cli.profiles_in.clock import is_clock
 from des_cli.profiles_in.dialect import PLAIN, SEPARATORS, Dialect, how_to_ask, recognise
 from des_cli.profiles_in.unit_spelling import unit_of
@@ -96,9 +96,11 @@ def split_header(
     found = recognise(text[start:], asked.separator, decimal)
     names = _record(lines, found, label)
     if not any(names):
-        raise ProfileError([Problem(label, "is empty: a header such as t_s,arm_rpm,… is missing")])
+        raise ProfileError(
+            [Complaint(label, "is empty: a header such as t_s,arm_rpm,… is missing")]
+        )
     remarks = []
-    problems = [Problem(f"{label}:{line}", how_to_ask(found, asked))] if found != asked else []
+    complaints = [Complaint(f"{label}:{line}", how_to_ask(found, asked))] if found != asked else []
     if any(_is_value(found, name) for name in names) and not {*named} & {*names}:
         inside = _commented_names(comments[-1:], names, found)
         if inside:
@@ -108,9 +110,9 @@ def split_header(
         elif all(_is_value(found, name) for name in names if name):
             what = "the first line is numbers: a header is missing; put one above the numbers, "
             example = found.separator.join(("t_s", "p_rad_s", "q_rad_s", "r_rad_s"))
-            problems.append(Problem(f"{label}:{line}", f"{what}such as {plain(example)}"))
-    if problems:
-        raise ProfileError(problems)
+            complaints.append(Complaint(f"{label}:{line}", f"{what}such as {plain(example)}"))
+    if complaints:
+        raise ProfileError(complaints)
     units, first, below = _above_the_rows(lines, found, len(names), remarks)
     if comments or below:
         remarks.append(f"{comment_lines(len(comments) + below)} skipped")
@@ -194,7 +196,7 @@ def _record(lines: _Lines, dialect: Dialect, label: str) -> list[str]:
         return [cell.strip() for cell in next(dialect.records(lines), [])]
     except csv.Error as error:
         where = f"{label}:{line}"
-        raise ProfileError([Problem(where, f"is not a CSV header: {error}")]) from None
+        raise ProfileError([Complaint(where, f"is not a CSV header: {error}")]) from None
 
 
 def _peek(lines: _Lines, dialect: Dialect) -> list[str]:

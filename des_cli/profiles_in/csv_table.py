@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from des_cli.errors import Problem, ProfileError
+from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.profiles_in.clock import is_clock
 from des_cli.profiles_in.csv_header import Header, is_comment
@@ -112,13 +112,13 @@ def _read_fast(header: Header, places: Sequence[int]) -> Rows | None:
 def _read_slowly(
     header: Header, places: Sequence[int], may_lack: Sequence[bool], clock: int | None
 ) -> Rows:
-    complaints = _Complaints(header.label)
+    complaints = _ByWords(header.label)
     records = _Records(header, complaints)
     values: list[list[float]] = []
     lines: list[int] = []
-    cell_problem = _cell_checker(header)
+    cell_complaint = _cell_checker(header)
     for line, cells in records:
-        if wrong := _row_problem(header, cells):
+        if wrong := _row_complaint(header, cells):
             complaints.add(line, wrong)
             continue
         row = []
@@ -131,22 +131,22 @@ def _read_slowly(
             elif (place == clock and is_clock(cell)) or (optional and _is_lacking(cell)):
                 row.append(math.nan)
                 continue
-            complaints.add(line, cell_problem(place, cell))
+            complaints.add(line, cell_complaint(place, cell))
         if not complaints:
             values.append(row)
             lines.append(line)
             if len(values) > MAX_SAMPLES:
                 what = f"has more than {MAX_SAMPLES} rows"
-                raise ProfileError([Problem(header.label, what)])
-    problems = complaints.problems()
-    if not values and not problems:
-        problems.append(Problem(header.label, "has a header but no rows"))
-    if problems:
-        raise ProfileError(problems)
+                raise ProfileError([Complaint(header.label, what)])
+    found = complaints.complaints()
+    if not values and not found:
+        found.append(Complaint(header.label, "has a header but no rows"))
+    if found:
+        raise ProfileError(found)
     return Rows(np.array(values), lines, records.comments)
 
 
-class _Complaints:
+class _ByWords:
     """What is wrong with rows: the same words on many of them are one line."""
 
     def __init__(self, label: str) -> None:
@@ -166,17 +166,17 @@ class _Complaints:
         else:
             self._unsaid += 1
 
-    def problems(self) -> list[Problem]:
-        """Return a problem for each kind, at the first line that has it."""
+    def complaints(self) -> list[Complaint]:
+        """Return a complaint for each kind, at the first line that has it."""
         said = [
-            Problem(
+            Complaint(
                 f"{self._label}:{line}", what if count == 1 else f"{what} ({count} rows like this)"
             )
             for what, (line, count) in self._found.items()
         ]
         if self._unsaid:
             words = f"… and {self._unsaid} more cells or rows like these"
-            said.append(Problem(self._label, words))
+            said.append(Complaint(self._label, words))
         return said
 
 
@@ -186,13 +186,13 @@ class _Records:
     Parameters
     ----------
     header : Header
-    complaints : _Complaints, optional
+    complaints : _ByWords, optional
         Takes what is wrong with rows that cannot be split into cells.
     """
 
-    def __init__(self, header: Header, complaints: _Complaints | None = None) -> None:
+    def __init__(self, header: Header, complaints: _ByWords | None = None) -> None:
         self._header = header
-        self._complaints = _Complaints(header.label) if complaints is None else complaints
+        self._complaints = _ByWords(header.label) if complaints is None else complaints
         self._line = header.lines
         self._fresh = True
         self.comments = 0
@@ -230,7 +230,7 @@ class _Records:
             yield self._start, cells
 
 
-def _row_problem(header: Header, cells: Sequence[str]) -> str:
+def _row_complaint(header: Header, cells: Sequence[str]) -> str:
     """Say what is wrong with a row as a whole; separators too many at its end are not."""
     names, width = header.names, len(header.names)
     if cells[0].strip() == names[0] and [cell.strip() for cell in cells] == names:
@@ -249,7 +249,7 @@ def _cell_checker(header: Header) -> Callable[[int, str], str]:
     """Return what says why a cell is no number of its column."""
     other = "," if header.dialect.decimal == "." else "."
 
-    def problem(place: int, cell: str) -> str:
+    def complaint(place: int, cell: str) -> str:
         name, cell = plain(header.names[place]), cell.strip()
         if not cell:
             return f"{name}: is missing"
@@ -263,7 +263,7 @@ def _cell_checker(header: Header) -> Callable[[int, str], str]:
             hint = f", with a decimal {sign} where the file has the other sign"
         return f"{name}: must be a number, is {shown(cell)}{hint}"
 
-    return problem
+    return complaint
 
 
 def _is_lacking(cell: str) -> bool:

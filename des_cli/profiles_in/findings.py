@@ -8,11 +8,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from des_cli.errors import Problem, ProfileError
+from des_cli.errors import Complaint, ProfileError
 from des_cli.profiles_in.wording import did_you_mean, one_of, shown
 from des_cli.profiles_in.yaml_nodes import Node, Step, path_text
 
-MAX_PROBLEMS = 50
+MAX_COMPLAINTS = 50
 """Lines printed of one profile; the rest is counted."""
 
 
@@ -27,13 +27,13 @@ class Findings:
 
     def __init__(self, root: Node) -> None:
         self.root = root
-        self.problems: list[Problem] = []
+        self.complaints: list[Complaint] = []
 
     def add(self, path: Sequence[Step], words: str, *, of_key: bool = False) -> None:
         """Add what is wrong with the value (or the key) at a path."""
         place = self.root.place_of(path, of_key=of_key)
         name = path_text(path)
-        self.problems.append(Problem(f"{place}: {name}" if name else place, words))
+        self.complaints.append(Complaint(f"{place}: {name}" if name else place, words))
 
     def add_validation(self, error: ValidationError, prefix: Sequence[Step] = ()) -> set[Step]:
         """Add what the schema found.
@@ -47,7 +47,7 @@ class Findings:
         Returns
         -------
         set of str or int
-            The members of the validated value that have a problem.
+            The members of the validated value that have a complaint.
         """
         failed: set[Step] = set()
         for details in error.errors(include_url=False):
@@ -65,24 +65,24 @@ class Findings:
         return failed
 
     def raise_if_any(self) -> None:
-        """Raise a ProfileError with every problem found, if there is one."""
-        if self.problems:
-            raise ProfileError(sorted(dict.fromkeys(self.problems), key=_line_and_column))
+        """Raise a ProfileError with every complaint, if there is one."""
+        if self.complaints:
+            raise ProfileError(sorted(dict.fromkeys(self.complaints), key=_line_and_column))
 
 
-def _line_and_column(problem: Problem) -> tuple[int, int]:
-    """Order problems as they stand in the file; options come last."""
-    match = re.search(r":(\d+):(\d+)(: |$)", problem.where)
+def _line_and_column(complaint: Complaint) -> tuple[int, int]:
+    """Order complaints as they stand in the file; options come last."""
+    match = re.search(r":(\d+):(\d+)(: |$)", complaint.where)
     return (int(match[1]), int(match[2])) if match else (1 << 30, 0)
 
 
-def bounded(problems: Sequence[Problem]) -> list[Problem]:
-    """Return the problems once each, no more than a person would read."""
-    once = list(dict.fromkeys(problems))
-    if len(once) <= MAX_PROBLEMS:
+def bounded(complaints: Sequence[Complaint]) -> list[Complaint]:
+    """Return the complaints once each, no more than a person would read."""
+    once = list(dict.fromkeys(complaints))
+    if len(once) <= MAX_COMPLAINTS:
         return once
-    rest = len(once) - MAX_PROBLEMS
-    return [*once[:MAX_PROBLEMS], Problem("", f"… and {rest} more problems")]
+    rest = len(once) - MAX_COMPLAINTS
+    return [*once[:MAX_COMPLAINTS], Complaint("", f"… and {rest} more problems")]
 
 
 def _words(details: Any, path: Sequence[Step]) -> str:

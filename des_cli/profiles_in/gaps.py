@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
-from des_cli.errors import Problem, ProfileError
+from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.gaps import find_gaps
 
@@ -53,7 +53,7 @@ class GapHandling:
     parts: int = 1
 
 
-def find_short_steps(t: Floats, label: str, line: Place) -> list[Problem]:
+def find_short_steps(t: Floats, label: str, line: Place) -> list[Complaint]:
     """Say which rows follow another one within hardly any time.
 
     Parameters
@@ -70,7 +70,7 @@ def find_short_steps(t: Floats, label: str, line: Place) -> list[Problem]:
     rows = np.flatnonzero(step < SHORTEST_PER_MEDIAN * median).tolist()
     return _bounded(
         [
-            Problem(
+            Complaint(
                 f"{label}:{line(row + 1)}",
                 f"follows the row before it within {step[row]:.3g} s, from t = {t[row]:.12g} to "
                 f"{t[row + 1]:.12g} s, where {median:.4g} s are usual; remove one of the two rows",
@@ -112,7 +112,7 @@ def select_rows(
         cure = (
             "--gap bridge (or gap: bridge) moves on across it, split makes a motion of each stretch"
         )
-        found = [Problem(f"{label}:{line(r + 1)}", f"{_gap(t, r)}; {cure}") for r in refused]
+        found = [Complaint(f"{label}:{line(r + 1)}", f"{_gap(t, r)}; {cure}") for r in refused]
         raise ProfileError(_bounded(found, label))
     told = [
         f"line {line(row + 1)}: {_gap(t, row)}; it was bridged by a motion between its two ends"
@@ -138,12 +138,12 @@ def _part(
     kept = [rows for rows in every if rows.stop - rows.start >= LEAST_ROWS]
     if not kept:
         what = f"has gaps on either side of every row; a motion needs {LEAST_ROWS} rows without one"
-        raise ProfileError([Problem(label, what)])
+        raise ProfileError([Complaint(label, what)])
     handling.parts = len(kept)
     part = handling.part or (1 if len(kept) == 1 else None)
     if part is None or not 1 <= part <= len(kept):
         what = f"gaps split it into {len(kept)} motions, and one is wanted here: reduce takes all"
-        raise ProfileError([Problem(label, what)])
+        raise ProfileError([Complaint(label, what)])
     rows = kept[part - 1]
     if len(every) > 1:
         remarks.append(
@@ -168,8 +168,8 @@ def _gap(t: Floats, row: int) -> str:
     )
 
 
-def _bounded(problems: list[Problem], label: str) -> list[Problem]:
-    if len(problems) <= _TOLD:
-        return problems
-    rest = Problem(label, f"… and {len(problems) - _TOLD} more steps like these")
-    return [*problems[:_TOLD], rest]
+def _bounded(complaints: list[Complaint], label: str) -> list[Complaint]:
+    if len(complaints) <= _TOLD:
+        return complaints
+    rest = Complaint(label, f"… and {len(complaints) - _TOLD} more steps like these")
+    return [*complaints[:_TOLD], rest]

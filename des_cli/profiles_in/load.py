@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from des_cli.errors import FileAccessError, Problem, ProfileError, UsageError
+from des_cli.errors import Complaint, FileAccessError, ProfileError, UsageError
 from des_cli.model.profile import Profile
 from des_cli.profiles_in.builtin import builtin_profile, builtin_profiles
 from des_cli.profiles_in.findings import Findings, bounded
@@ -134,14 +134,14 @@ def _load(
             return parse_profile(decode(data, label), reading, name, settings)
         return _load_csv(text, reading, name, settings, columns, written)
     except ProfileError as error:
-        raise ProfileError(bounded(error.problems)) from None
+        raise ProfileError(bounded(error.complaints)) from None
 
 
 def _read(source: str | Path, stdin: bytes | None) -> tuple[Path | None, str, bytes]:
     """Return the path (None for standard input), the label and the bytes."""
     if source == "-":
         if stdin is None:
-            raise FileAccessError([Problem(STDIN_LABEL, "nothing was given on standard input")])
+            raise FileAccessError([Complaint(STDIN_LABEL, "nothing was given on standard input")])
         return None, STDIN_LABEL, stdin
     path, label = Path(source), label_of(source)
     try:
@@ -154,7 +154,7 @@ def _read(source: str | Path, stdin: bytes | None) -> tuple[Path | None, str, by
             names = [profile.name for profile in builtin_profiles()]
             hint = did_you_mean(str(source), names)
             what = f"there is no such file, and no built-in profile of that name{hint}"
-            raise FileAccessError([Problem(label, what)])
+            raise FileAccessError([Complaint(label, what)])
         path, label = builtin.path, builtin.path.name
     return path, label, read_source(path, label)
 
@@ -174,14 +174,16 @@ def _refuse_table_options(
     label: str, columns: Mapping[str, str], written: Mapping[str, str]
 ) -> None:
     """Refuse options that say how a CSV is to be read, of a YAML profile."""
-    problems = []
+    complaints = []
     if columns:
-        problems.append(Problem(label, "--column renames columns of a CSV profile; this is YAML"))
+        complaints.append(
+            Complaint(label, "--column renames columns of a CSV profile; this is YAML")
+        )
     for key in written:
         what = f"--{key} says how a CSV profile is written; this is YAML: give samples.{key}"
-        problems.append(Problem(label, what))
-    if problems:
-        raise UsageError(problems)
+        complaints.append(Complaint(label, what))
+    if complaints:
+        raise UsageError(complaints)
 
 
 def _safe_name(stem: str) -> str:

@@ -87,7 +87,7 @@ def build_machine(section: Any, path: Sequence[Step], findings: Findings) -> Mac
     Machine or None
         None after saying what is wrong.
     """
-    known = len(findings.problems)
+    known = len(findings.complaints)
     base = None
     if section.base is not None:
         base = named_machine(section.base, [*path, "base"], findings)
@@ -95,7 +95,7 @@ def build_machine(section: Any, path: Sequence[Step], findings: Findings) -> Mac
     limits = _limits(section, base, has_base, path, findings)
     chain = read_chain_of_section(section, base, path, findings)
     gravity = section.si("gravity", base.gravity if base else STANDARD_GRAVITY_M_S2)
-    if len(findings.problems) > known or chain is None:
+    if len(findings.complaints) > known or chain is None:
         return None
     machine = Machine(
         name=section.name or (base.name if base else "own machine"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from des_cli.errors import Problem, ProfileError
+from des_cli.errors import Complaint, ProfileError
 from des_cli.model.metric import STUDY_METRIC
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE
 from des_cli.profiles_in.machine_yaml import is_machine_file
@@ -24,7 +24,7 @@ _ALTERNATIVES = ("joints", "body_rates", "samples")
 """Sections of which a profile has one."""
 
 
-def apply_settings(root: Node, settings: Sequence[str]) -> list[Problem]:
+def apply_settings(root: Node, settings: Sequence[str]) -> list[Complaint]:
     """Change a document by settings, in their order.
 
     A key replaces the one that gives the same quantity in another unit, or without
@@ -44,16 +44,16 @@ def apply_settings(root: Node, settings: Sequence[str]) -> list[Problem]:
 
     Returns
     -------
-    list of Problem
+    list of Complaint
         One for each setting that cannot be understood or applied.
     """
-    problems: list[Problem] = []
+    complaints: list[Complaint] = []
     for setting in settings:
         try:
             _apply(root, setting)
         except ProfileError as error:
-            problems += error.problems
-    return problems
+            complaints += error.complaints
+    return complaints
 
 
 def _apply(root: Node, setting: str) -> None:
@@ -93,7 +93,7 @@ def _value(text: str, label: str) -> Node:
     try:
         return _relabel(parse_yaml(text, label), label)
     except ProfileError as error:
-        words = "; ".join(problem.what for problem in error.problems)
+        words = "; ".join(complaint.what for complaint in error.complaints)
         raise _rejected(label, f"the value {words}") from None
 
 
@@ -178,4 +178,4 @@ def _check_container(node: Node, step: Step, path: Sequence[Step], label: str) -
 
 
 def _rejected(label: str, what: str) -> ProfileError:
-    return ProfileError([Problem(label, what)])
+    return ProfileError([Complaint(label, what)])

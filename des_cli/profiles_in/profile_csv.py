@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from des_cli.errors import Problem, ProfileError
+from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, GCommand, JointCommands
 from des_cli.profiles_in.angles import unwrap
@@ -73,14 +73,14 @@ def parse_samples(
     remarks = [] if remarks is None else remarks
     header = split_header(text, label, separator, decimal, columns.values())
     said = [*header.remarks]
-    problems: list[Problem] = []
+    complaints: list[Complaint] = []
     euler = conditioning.euler is not None
-    chosen = choose_columns(header, columns, problems, said, euler=euler)
-    if problems:
-        raise ProfileError(problems)
-    table, by_stem = _read(header, chosen, problems, said)
-    if problems:
-        raise ProfileError(problems)
+    chosen = choose_columns(header, columns, complaints, said, euler=euler)
+    if complaints:
+        raise ProfileError(complaints)
+    table, by_stem = _read(header, chosen, complaints, said)
+    if complaints:
+        raise ProfileError(complaints)
     remarks += said
     rows = rows_inside(by_stem["t"], conditioning, label, remarks)
 
@@ -88,14 +88,14 @@ def parse_samples(
         return table.lines[int(rows[row])]
 
     by_stem = {stem: column[rows] for stem, column in by_stem.items()}
-    by_stem = with_quaternions(by_stem, conditioning.euler, header, line, problems)
-    problems += find_short_steps(by_stem["t"], label, line)
+    by_stem = with_quaternions(by_stem, conditioning.euler, header, line, complaints)
+    complaints += find_short_steps(by_stem["t"], label, line)
     said = []
     for column in chosen:
         if column.stem in JOINTS and column.unit and column.unit.quantity == "angle":
-            by_stem[column.stem] = _unwrapped(column, by_stem, label, line, said, problems)
-    if problems:
-        raise ProfileError(problems)
+            by_stem[column.stem] = _unwrapped(column, by_stem, label, line, said, complaints)
+    if complaints:
+        raise ProfileError(complaints)
     by_stem = in_seat_axes(by_stem, conditioning, label)
     flies_attitude = not {"arm", "p", *G_STEMS} & set(by_stem)
     if flies_attitude:
@@ -125,7 +125,7 @@ def parse_samples(
 
 
 def _read(
-    header: Header, chosen: list[Column], problems: list[Problem], remarks: list[str]
+    header: Header, chosen: list[Column], complaints: list[Complaint], remarks: list[str]
 ) -> tuple[Rows, dict[str, Floats]]:
     """Return the rows of the file, and the columns in SI by their stems."""
     time = next(column for column in chosen if column.stem == "t")
@@ -138,11 +138,11 @@ def _read(
     if rows.comments:
         remarks.append(f"{comment_lines(rows.comments)} skipped between the rows")
     recorded = rows.values[:, chosen.index(time)]
-    times = sample_times(header, time, recorded, rows, problems, remarks)
+    times = sample_times(header, time, recorded, rows, complaints, remarks)
     if times is not None:
         by_stem["t"] = times.t
-        _check_times(header, time, times, rows, problems)
-    _check_magnitudes(header, chosen, by_stem, rows, problems)
+        _check_times(header, time, times, rows, complaints)
+    _check_magnitudes(header, chosen, by_stem, rows, complaints)
     return rows, by_stem
 
 
@@ -152,7 +152,7 @@ def _unwrapped(
     label: str,
     line: Place,
     remarks: list[str],
-    problems: list[Problem],
+    complaints: list[Complaint],
 ) -> Floats:
     """Return a joint's angle without jumps by full turns, saying what was done."""
     assert column.unit is not None, "an angle has a unit"
@@ -170,7 +170,7 @@ def _unwrapped(
             f"{name}: jumps {jump(row)} within a row ({len(found.unclear)} such jumps), which no "
             "joint follows and which is no full turn: give the angle without jumps, or more rows"
         )
-        problems.append(Problem(f"{label}:{line(row + 1)}", what))
+        complaints.append(Complaint(f"{label}:{line(row + 1)}", what))
     elif found.jumps:
         row = found.jumps[0]
         others = f" and {len(found.jumps) - 1} more" if len(found.jumps) > 1 else ""
@@ -182,24 +182,24 @@ def _unwrapped(
 
 
 def _check_times(
-    header: Header, column: Column, times: SampleTimes, rows: Rows, problems: list[Problem]
+    header: Header, column: Column, times: SampleTimes, rows: Rows, complaints: list[Complaint]
 ) -> None:
     if len(times.t) < 2:
         what = "has one row; a motion needs two or more"
-        problems.append(Problem(header.label, what))
+        complaints.append(Complaint(header.label, what))
         return
     late = np.flatnonzero(~(np.diff(times.t) > 0))
     name = plain(column.in_file)
     for index in late[:20].tolist():
-        problems.append(
-            Problem(
+        complaints.append(
+            Complaint(
                 f"{header.label}:{rows.lines[index + 1]}",
                 f"{name}: {times.written(index + 1)} does not increase "
                 f"(previous {times.written(index)})",
             )
         )
     if len(late) > 20:
-        problems.append(Problem(header.label, f"… and {len(late) - 20} more times like these"))
+        complaints.append(Complaint(header.label, f"… and {len(late) - 20} more times like these"))
 
 
 def _check_magnitudes(
@@ -207,7 +207,7 @@ def _check_magnitudes(
     chosen: list[Column],
     by_stem: Mapping[str, Floats],
     rows: Rows,
-    problems: list[Problem],
+    complaints: list[Complaint],
 ) -> None:
     """Say where a command is beyond any machine."""
     for column in chosen:
@@ -217,4 +217,4 @@ def _check_magnitudes(
         if len(wrong):
             place = f"{header.label}:{rows.lines[int(wrong[0])]}"
             what = f"is beyond {MAX_MAGNITUDE:g} rad or rad/s ({len(wrong)} such cells)"
-            problems.append(Problem(place, f"{plain(column.in_file)}: {what}"))
+            complaints.append(Complaint(place, f"{plain(column.in_file)}: {what}"))

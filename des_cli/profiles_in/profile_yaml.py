@@ -115,7 +115,7 @@ def parse_profile(text: str, reading: Reading, name: str, settings: Sequence[str
     if not isinstance(root.value, dict):
         findings.add((), "is not a profile: a profile is a mapping that starts with format:")
         findings.raise_if_any()
-    findings.problems += apply_settings(root, settings)
+    findings.complaints += apply_settings(root, settings)
     document = validated(ProfileDocument, findings)
     return finish(document, document_commands, reading, name, findings)
 
@@ -130,7 +130,7 @@ def parse_settings(settings: Sequence[str], label: str) -> tuple[ProfileSettings
     """
     root = Node(label, {})
     findings = Findings(root)
-    findings.problems += apply_settings(root, settings)
+    findings.complaints += apply_settings(root, settings)
     return validated(ProfileSettings, findings), findings
 
 
@@ -170,13 +170,13 @@ def finish(
     try:
         commands = commands_of(document, reading, findings)
     except DesError as error:
-        unread = error if unread is None else ProfileError([*unread.problems, *error.problems])
+        unread = error if unread is None else ProfileError([*unread.complaints, *error.complaints])
     if commands is not None:
         check_smoothing(reading.conditioning, commands[0], findings)
     reduction = read_reduction(document.reduction, findings)
     initial = read_initial(document.initial, commands, findings)
-    if unread is not None and findings.problems:
-        findings.problems += unread.problems
+    if unread is not None and findings.complaints:
+        findings.complaints += unread.complaints
     findings.raise_if_any()
     if unread is not None:
         raise unread

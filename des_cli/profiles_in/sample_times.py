@@ -7,7 +7,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from des_cli.errors import Problem
+from des_cli.errors import Complaint
 from des_cli.model.arrays import Floats
 from des_cli.profiles_in.clock import ClockError, is_clock, seconds_of
 from des_cli.profiles_in.column_kinds import Column
@@ -50,7 +50,7 @@ def sample_times(
     column: Column,
     recorded: Floats,
     rows: Rows,
-    problems: list[Problem],
+    complaints: list[Complaint],
     remarks: list[str],
 ) -> SampleTimes | None:
     """Return the times of samples, or None after saying what is wrong.
@@ -64,11 +64,11 @@ def sample_times(
         Its numbers; not a number where it holds a time of day or a date.
     rows : Rows
         Where each of them stands.
-    problems, remarks : list
+    complaints, remarks : list
         Take what is wrong, and what was done.
     """
     if np.isnan(recorded).any():
-        return _clock_times(header, column, recorded, rows, problems, remarks)
+        return _clock_times(header, column, recorded, rows, complaints, remarks)
     assert column.unit is not None, "a column of numbers was chosen by its unit"
     t = recorded * column.unit.to_si
     if np.max(np.abs(t)) < LARGE:
@@ -87,7 +87,7 @@ def _clock_times(
     column: Column,
     recorded: Floats,
     rows: Rows,
-    problems: list[Problem],
+    complaints: list[Complaint],
     remarks: list[str],
 ) -> SampleTimes | None:
     cells = column_text(header, column.place)
@@ -103,7 +103,7 @@ def _clock_times(
         seconds, turns = seconds_of(cells)
     except ClockError as error:
         where = f"{header.label}:{rows.lines[error.row]}"
-        problems.append(Problem(where, f"{name}: {cells[error.row].strip()} {error}"))
+        complaints.append(Complaint(where, f"{name}: {cells[error.row].strip()} {error}"))
         return None
     remarks.append(f"times are counted from the first, {cells[0].strip()}")
     if turns:

@@ -7,7 +7,7 @@ import os
 import stat
 from pathlib import Path
 
-from des_cli.errors import FileAccessError, Problem, ProfileError
+from des_cli.errors import Complaint, FileAccessError, ProfileError
 from des_cli.profiles_in.wording import plain
 
 MAX_BYTES = 1 << 30
@@ -53,7 +53,7 @@ def decode(data: bytes, label: str) -> str:
     except UnicodeDecodeError as error:
         byte, line = _first_wrong_byte(data, error)
         what = f"is not UTF-8 text (byte {byte}); save it as UTF-8"
-        raise ProfileError([Problem(f"{label}:{line}", what)]) from None
+        raise ProfileError([Complaint(f"{label}:{line}", what)]) from None
     return _without_nul(text, label)
 
 
@@ -73,7 +73,7 @@ def decode_table(data: bytes, label: str) -> tuple[str, tuple[str, ...]]:
         return _without_nul(data.decode("utf-8-sig"), label), ()
     except UnicodeDecodeError as error:
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            raise ProfileError([Problem(label, "is UTF-16 text; save it as UTF-8")]) from None
+            raise ProfileError([Complaint(label, "is UTF-16 text; save it as UTF-8")]) from None
         byte, line = _first_wrong_byte(data, error)
     remark = f"the file is not UTF-8 (byte {byte} in line {line}): it is read as Latin-1"
     return _without_nul(data.decode("latin-1"), label), (remark,)
@@ -88,7 +88,9 @@ def _without_nul(text: str, label: str) -> str:
     nul = text.find("\0")
     if nul >= 0:
         line = text.count("\n", 0, nul) + 1
-        raise ProfileError([Problem(f"{label}:{line}", "holds a NUL byte; it is not a text file")])
+        raise ProfileError(
+            [Complaint(f"{label}:{line}", "holds a NUL byte; it is not a text file")]
+        )
     return text
 
 
@@ -99,4 +101,4 @@ def label_of(path: Path | str) -> str:
 
 
 def _refused(label: str, what: str) -> FileAccessError:
-    return FileAccessError([Problem(label, what)])
+    return FileAccessError([Complaint(label, what)])

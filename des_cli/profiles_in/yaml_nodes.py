@@ -24,7 +24,7 @@ from ruamel.yaml.events import (
     SequenceStartEvent,
 )
 
-from des_cli.errors import Problem, ProfileError
+from des_cli.errors import Complaint, ProfileError
 from des_cli.profiles_in.wording import plain, shown
 
 MAX_BYTES = 1 << 19
@@ -172,7 +172,7 @@ def parse_scalar_text(text: str) -> Scalar:
 
 
 def _rejected(where: str, what: str) -> ProfileError:
-    return ProfileError([Problem(where, what)])
+    return ProfileError([Complaint(where, what)])
 
 
 class _Builder:
@@ -186,7 +186,7 @@ class _Builder:
         self.anchors: dict[str, Node] = {}
         self.documents = 0
         self.nodes = 0
-        self.problems: list[Problem] = []
+        self.complaints: list[Complaint] = []
 
     def take(self, event: Any) -> None:
         """Take the next event of the parser."""
@@ -256,16 +256,16 @@ class _Builder:
             self.key = None
             if key in parent.value:
                 first = parent.key_places[key].removeprefix(f"{self.label}:").split(":")[0]
-                self.problems.append(
-                    Problem(place, f"{plain(key)} is given twice; the first is on line {first}")
+                self.complaints.append(
+                    Complaint(place, f"{plain(key)} is given twice; the first is on line {first}")
                 )
             parent.value.setdefault(key, node)
             parent.key_places.setdefault(key, place)
 
     def finish(self) -> Node:
         """Return the tree, or say that there is none."""
-        if self.problems:
-            raise ProfileError(self.problems)
+        if self.complaints:
+            raise ProfileError(self.complaints)
         if self.root is None:
             raise _rejected(self.label, "is empty")
         return self.root

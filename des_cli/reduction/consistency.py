@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from des_cli.errors import Problem, UsageError
+from des_cli.errors import Complaint, UsageError
 from des_cli.model.profile import Reduction
 
 
@@ -25,13 +25,13 @@ def require_consistent(reduction: Reduction, name: str = "") -> None:
         With everything that excludes something else.
     """
     where = f"{name}: reduction" if name else "reduction"
-    problems = [
-        Problem(where, what)
+    complaints = [
+        Complaint(where, what)
         for contradictions in (_of_the_method, _of_the_control, _of_what_is_weighed)
         for what in contradictions(reduction)
     ]
-    if problems:
-        raise UsageError(problems)
+    if complaints:
+        raise UsageError(complaints)
 
 
 def _of_the_method(reduction: Reduction) -> Iterator[str]:

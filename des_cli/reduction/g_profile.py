@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from des_cli.errors import Problem, UsageError
+from des_cli.errors import Complaint, UsageError
 from des_cli.kinematics.chain import Chain, chain_of
 from des_cli.kinematics.g_motion import (
     NO_G,
@@ -99,7 +99,7 @@ def follow_g(profile: Profile, command: GCommand) -> DesiredMotion:
     forms = seat_forms(chain, profile.machine.gravity)
     if not forms.vertical:
         what = "asks for G, and the machine's arm does not turn about the vertical; command joints"
-        raise UsageError([Problem(profile.name, what)])
+        raise UsageError([Complaint(profile.name, what)])
     task = _Task(profile, chain, forms, _eased(profile.machine))
     motion = sample_spline(_fit(task, _with_rates(profile.t, command)), profile.t)
     response = respond(profile.machine, profile.seat, motion)

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from des_cli.errors import FileAccessError, Problem
+from des_cli.errors import Complaint, FileAccessError
 
 # A name has at most 255 bytes; 40 characters of four bytes leave room for the
 # rest of the temporary's name.
@@ -144,7 +144,7 @@ def sync_folder(folder: Path) -> None:
 
 def exists(path: Path) -> FileAccessError:
     """Return the error that refuses to replace a file."""
-    return FileAccessError([Problem(str(path), "exists; --overwrite replaces it")])
+    return FileAccessError([Complaint(str(path), "exists; --overwrite replaces it")])
 
 
 @contextmanager
@@ -174,11 +174,11 @@ def plain_words(path: Path, failed: str, *, missing: str | None = None) -> Itera
         raise
     except OSError as error:
         if isinstance(error, FileNotFoundError) and missing is not None:
-            raise FileAccessError([Problem(str(path), f"{failed}: {missing}")]) from error
+            raise FileAccessError([Complaint(str(path), f"{failed}: {missing}")]) from error
         words = _PLAIN_WORDS.get(error.errno or 0, error.strerror or type(error).__name__)
-        raise FileAccessError([Problem(str(path), f"{failed}: {words}")]) from error
+        raise FileAccessError([Complaint(str(path), f"{failed}: {words}")]) from error
     except ValueError as error:
-        raise FileAccessError([Problem(repr(str(path)), f"{failed}: {error}")]) from error
+        raise FileAccessError([Complaint(repr(str(path)), f"{failed}: {error}")]) from error
 
 
 def _mode(path: Path) -> int | None:

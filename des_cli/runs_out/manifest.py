@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from des_cli import __version__
-from des_cli.errors import FileAccessError, Problem
+from des_cli.errors import Complaint, FileAccessError
 from des_cli.model.profile import Profile
 from des_cli.runs_out import atomic
 
@@ -75,16 +75,16 @@ def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
     Raises
     ------
     FileAccessError
-        If there is none, or it is not one of this format; with all problems.
+        If there is none, or it is not one of this format; with all complaints.
     """
     path = Path(folder) / MANIFEST
     with atomic.plain_words(path, "cannot be read"):
         if not path.exists():
-            raise FileAccessError([Problem(str(folder), f"is not a run: it has no {MANIFEST}")])
+            raise FileAccessError([Complaint(str(folder), f"is not a run: it has no {MANIFEST}")])
     manifest = parse_object(path, read_bytes(path))
-    problems = [Problem(str(path), what) for what in _malformed(manifest)]
-    if problems:
-        raise FileAccessError(problems)
+    complaints = [Complaint(str(path), what) for what in _malformed(manifest)]
+    if complaints:
+        raise FileAccessError(complaints)
     return manifest
 
 
@@ -99,9 +99,9 @@ def parse_object(path: Path, data: bytes) -> dict[str, Any]:
     try:
         content = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise FileAccessError([Problem(str(path), f"is not JSON: {error}")]) from error
+        raise FileAccessError([Complaint(str(path), f"is not JSON: {error}")]) from error
     if not isinstance(content, dict):
-        raise FileAccessError([Problem(str(path), "is not a JSON object")])
+        raise FileAccessError([Complaint(str(path), "is not a JSON object")])
     return content
 
 

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from des_cli.errors import FileAccessError, Problem
+from des_cli.errors import Complaint, FileAccessError
 from des_cli.model.arrays import Floats
 from des_cli.model.run import Run
 from des_cli.runs_out import atomic
@@ -118,32 +118,32 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
     Raises
     ------
     FileAccessError
-        If a file is missing, changed or unreadable; with all problems.
+        If a file is missing, changed or unreadable; with all complaints.
     """
     home = Path(folder)
     manifest = read_manifest(home)
-    problems: list[Problem] = []
+    complaints: list[Complaint] = []
     content: dict[str, bytes] = {}
     for entry in manifest["files"]:
         path = home / entry["name"]
         try:
             data = read_bytes(path)
         except FileAccessError as error:
-            problems += error.problems
+            complaints += error.complaints
             continue
         if len(data) != entry["size"] or hashlib.sha256(data).hexdigest() != entry["sha256"]:
             what = "is not the file that the manifest lists: it was changed after the run"
-            problems.append(Problem(str(path), what))
+            complaints.append(Complaint(str(path), what))
         if entry["name"] in (METRICS, TRAJECTORY):
             content[entry["name"]] = data
     listed = {entry["name"] for entry in manifest["files"]}
-    problems += [
-        Problem(str(home / MANIFEST), f"does not list {name}")
+    complaints += [
+        Complaint(str(home / MANIFEST), f"does not list {name}")
         for name in (COMMANDS, TRAJECTORY, METRICS)
         if name not in listed
     ]
-    if problems:
-        raise FileAccessError(problems)
+    if complaints:
+        raise FileAccessError(complaints)
     return StoredRun(
         name=manifest["profile"]["name"],
         folder=home,
@@ -181,7 +181,7 @@ def _require_free(target: Path, overwrite: bool) -> None:
             return
         if not target.is_dir():
             raise FileAccessError(
-                [Problem(str(target), "is a file; a run needs a folder, name another")]
+                [Complaint(str(target), "is a file; a run needs a folder, name another")]
             )
         # What a killed process left behind is nobody's work.
         if all(atomic.is_temporary(path.name) for path in target.iterdir()):
@@ -190,7 +190,7 @@ def _require_free(target: Path, overwrite: bool) -> None:
         what = "already holds a run; --overwrite replaces it"
     else:
         what = "is not empty and holds no run; name another folder, or --overwrite to write into it"
-    raise FileAccessError([Problem(str(target), what)])
+    raise FileAccessError([Complaint(str(target), what)])
 
 
 def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
@@ -204,7 +204,7 @@ def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
         outputs[PROFILE] = encode_run_profile(run, COMMANDS)
     if plots:
         # Imported here: matplotlib costs half a second that --no-plots does not need.
-        from des_cli.plots import draw_plots
+        from des_cli.show.plots import draw_plots
 
         figures = draw_plots(trajectory, run.metrics)
         outputs |= {f"plots/{name}.png": png for name, png in figures.items()}
@@ -286,12 +286,12 @@ def _read_trajectory(path: Path, data: bytes) -> dict[str, Floats]:
         }
     except (pa.ArrowException, OSError, ValueError, TypeError) as error:
         words = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise FileAccessError([Problem(str(path), f"cannot be read: {words}")]) from error
+        raise FileAccessError([Complaint(str(path), f"cannot be read: {words}")]) from error
     # A free motion has neither factors nor an adjoint; one within budgets per joint has ratios.
     factors = 1 if "p" in columns else 3 if any(name.startswith("p_") for name in columns) else 0
     adjoint = factors == 1 or any(name.startswith("adjoint_") for name in columns)
     names = trajectory_names(factors, adjoint=adjoint)
     absent = [name for name in names if name not in columns]
     if absent:
-        raise FileAccessError([Problem(str(path), f"has no column {name}") for name in absent])
+        raise FileAccessError([Complaint(str(path), f"has no column {name}") for name in absent])
     return columns

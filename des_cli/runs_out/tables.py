@@ -14,7 +14,7 @@ from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
-from des_cli.errors import NotReleasedError, Problem
+from des_cli.errors import Complaint, NotReleasedError
 from des_cli.model.arrays import Floats
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
@@ -194,7 +194,7 @@ def _interleaved(before: Floats, after: Floats) -> Floats:
 
 
 def _require_finite(columns: Mapping[str, Floats]) -> None:
-    problems = []
+    complaints = []
     for name, values in columns.items():
         bad = np.flatnonzero(~np.isfinite(values))
         if bad.size:
@@ -202,9 +202,9 @@ def _require_finite(columns: Mapping[str, Floats]) -> None:
                 f"{bad.size} of {len(values)} values are not finite numbers, the first "
                 f"({values[bad[0]]}) in row {bad[0] + 1}; no table is written"
             )
-            problems.append(Problem(name, what))
-    if problems:
-        raise NotReleasedError(problems)
+            complaints.append(Complaint(name, what))
+    if complaints:
+        raise NotReleasedError(complaints)
 
 
 def _text_columns(columns: Mapping[str, Floats]) -> Iterator[Sequence[list[str]]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import TypeAlias
 
 import numpy as np
@@ -54,17 +55,15 @@ class Sampled:
         local = [direction.sampled for direction in directions]
         counts = [len(each) for each in local]
         interval = np.concatenate([d.first + i for d, i in zip(directions, local, strict=True)])
+        spans = [step[d.first : d.first + len(d.rate) - 1] for d in directions]
         weight = [
             0.5 * span[i] * (np.sum(span) / np.sum(span[i]))  # every so many stand for all
-            for span, i in (
-                (step[d.first : d.first + len(d.rate) - 1], i)
-                for d, i in zip(directions, local, strict=True)
-            )
+            for span, i in zip(spans, local, strict=True)
         ]
         start, end = (
             [
                 np.concatenate([values(d)[i + by] for d, i in zip(directions, local, strict=True)])
-                for values in (lambda d: d.angle, lambda d: d.rate)
+                for values in (attrgetter("angle"), attrgetter("rate"))
             ]
             for by in (0, 1)
         )
@@ -132,4 +131,4 @@ def slopes_by_seat(
         seat = replace(chain.seat, **{angle: getattr(chain.seat, angle) + sign})
         felt = replace(chain, seat=seat).along(motion)
         values.append([claim.weight @ f(felt, claim.before) for f in functions])
-    return (np.array(values[:1]) - np.array(values[1:])) / (2.0 * STEP)
+    return np.asarray((np.array(values[:1]) - np.array(values[1:])) / (2.0 * STEP))

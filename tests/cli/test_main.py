@@ -14,7 +14,7 @@ from des_cli import __version__
 from des_cli.cli import main as main_module
 from des_cli.cli import schema as schema_module
 from des_cli.cli.main import COMMANDS, program
-from des_cli.errors import NoSolutionError, Problem
+from des_cli.errors import Complaint, NoSolutionError
 
 
 @pytest.fixture
@@ -70,7 +70,7 @@ def test_wrong_use_is_2_on_stderr(invoke, args: list[str]) -> None:
 
 
 def test_own_error_prints_each_problem_on_a_line(invoke, failing) -> None:
-    failing(NoSolutionError([Problem("a", "first"), Problem("b", "second")]))
+    failing(NoSolutionError([Complaint("a", "first"), Complaint("b", "second")]))
     result = invoke("schema")
     assert (result.exit_code, result.stdout, result.stderr) == (4, "", "a: first\nb: second\n")
 
@@ -108,7 +108,7 @@ def test_the_traceback_of_a_bug_is_printed_on_demand(invoke, failing, args, env)
 
 
 def test_colors_only_when_wanted(invoke, failing) -> None:
-    failing(NoSolutionError([Problem("a", "first")]))
+    failing(NoSolutionError([Complaint("a", "first")]))
     assert "\x1b[" not in invoke("schema").stderr
     assert "\x1b[" in invoke("--color", "always", "schema").stderr
     assert "\x1b[" in invoke("--color", "always", "schema", env={"NO_COLOR": "1"}).stderr

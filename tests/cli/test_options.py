@@ -6,9 +6,9 @@ from typing import get_args
 import click
 import pytest
 
+from des_cli.batch.job import TableFormat
 from des_cli.cli.options import _REDUCTION, TABLE_FORMATS, reduction_settings
 from des_cli.cli.reduce import reduce
-from des_cli.job import TableFormat
 from des_cli.model import profile
 from des_cli.runs_out import tables
 

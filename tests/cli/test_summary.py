@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
+from des_cli.batch.job import JobResult
 from des_cli.cli.console import Console
 from des_cli.cli.summary import exit_code_of, print_closing, print_result
 from des_cli.cli.summary_rows import change, number, percent, summary_rows
 from des_cli.errors import ExitCode
-from des_cli.job import JobResult
 
 METRICS = {
     "solver": {
@@ -226,7 +226,7 @@ def test_violations_are_named_even_when_quiet(capsys: pytest.CaptureFixture[str]
 
 
 def test_a_failed_result_prints_its_problems_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    failed = result(exit_code=ExitCode.NO_SOLUTION, problems=("c: infeasible",), state="failed")
+    failed = result(exit_code=ExitCode.NO_SOLUTION, complaints=("c: infeasible",), state="failed")
     print_result(Console(), failed, alone=True)
     assert capsys.readouterr().err == "c: infeasible\n"
 

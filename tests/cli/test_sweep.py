@@ -11,12 +11,12 @@ import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 
-from des_cli.batch import load_job
+from des_cli.batch.runner import load_job
 from des_cli.cli import sweep as module
 from des_cli.errors import ExitCode
 from des_cli.runs_out.point_table import COLUMNS
-from des_cli.sweep import PointJob
-from des_cli.tradeoff import CONSTANT_FACTORS
+from des_cli.tradeoff.jobs import PointJob
+from des_cli.tradeoff.point import CONSTANT_FACTORS
 from tests.support.points import curve, rows_of
 
 
@@ -69,7 +69,7 @@ def test_more_jobs_give_the_same_bytes(command, small: str) -> None:
 # bits than a worker.
 EARLY = """
 import sys
-import des_cli.pool as pool
+import des_cli.batch.pool as pool
 from des_cli.cli.main import program
 
 def local_executor(workers, make=pool.local_executor):

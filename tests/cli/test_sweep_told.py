@@ -5,13 +5,12 @@ from pathlib import Path
 
 import pytest
 
+from des_cli.batch.job import Job
 from des_cli.cli.tradeoff_text import point_line, points_text
-from des_cli.errors import ExitCode
-from des_cli.failure import Failure
-from des_cli.job import Job
+from des_cli.errors import ExitCode, Failure
 from des_cli.model.tradeoff import TradePoint
-from des_cli.sweep import PointJob, PointResult, exit_code_of, run_point
-from des_cli.tradeoff import doubts
+from des_cli.tradeoff.jobs import PointJob, PointResult, exit_code_of, run_point
+from des_cli.tradeoff.point import doubts
 
 RATE, G = "seat_rate_deviation_relative", "seat_g_rms_error_g"
 
@@ -46,7 +45,7 @@ GONE = TradePoint("optimum", "scalar", "r2", 1.0, "iteration-limit", message="to
 def test_a_point_is_named_after_what_is_swept(
     small: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("des_cli.tradeoff.trade_point", lambda *_: replace(POINT, swept=G))
+    monkeypatch.setattr("des_cli.tradeoff.point.trade_point", lambda *_: replace(POINT, swept=G))
     job = PointJob(Job(str(tmp_path / small)), "scalar", RATE, 0.2)
     [point] = run_point(job).points
     assert (point.swept, point.value) == (RATE, 0.2)

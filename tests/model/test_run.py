@@ -38,7 +38,7 @@ def test_every_quantity_has_a_unit() -> None:
 def test_bounds_for_the_occupant_and_jerk_refuse_like_any_limit(limits: LimitsPolicy) -> None:
     with pytest.raises(NotReleasedError) as caught:
         run_with(limits, FELT, JERK).require_release()
-    assert [problem.what for problem in caught.value.problems] == [str(FELT), str(JERK)]
+    assert [problem.what for problem in caught.value.complaints] == [str(FELT), str(JERK)]
 
 
 def test_a_warning_and_the_desired_motion_refuse_nothing() -> None:

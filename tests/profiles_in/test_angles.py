@@ -20,7 +20,7 @@ def load(fork: list[float], step: float = 0.1) -> Profile:
     return load_profile("-", stdin=(JOINTS + "".join(rows)).encode())
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=100)
 @given(steps=st.lists(st.floats(-0.6, 0.6), min_size=12, max_size=60), first=st.floats(-3.0, 3.0))
 def test_a_wrapped_angle_is_found_again(steps: list[float], first: float) -> None:
     angle = first + np.concatenate([[0.0], np.cumsum(steps)])

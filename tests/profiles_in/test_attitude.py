@@ -49,7 +49,7 @@ def load(text: str, *settings: str, columns: dict[str, str] | None = None) -> Pr
 def problems_of(text: str, *settings: str) -> list[str]:
     with pytest.raises(ProfileError) as caught:
         load(text, *settings)
-    return [str(problem) for problem in caught.value.problems]
+    return [str(problem) for problem in caught.value.complaints]
 
 
 def seat_error_deg(profile: Profile, t: np.ndarray, turn: Rotation) -> float:

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from des_cli.errors import Problem
+from des_cli.errors import Complaint
 from des_cli.profiles_in.column_kinds import JOINTS, RATES
 from des_cli.profiles_in.columns import choose_columns
 from des_cli.profiles_in.csv_header import split_header
@@ -18,7 +18,7 @@ def choose(
     """Return header and unit by stem, the problems, and the remarks."""
     count = names.count(",") + 1
     header = split_header(f"{names}\n{below}" + ",".join("0" * count) + "\n", "x")
-    problems: list[Problem] = []
+    problems: list[Complaint] = []
     remarks: list[str] = []
     found = choose_columns(header, named, problems, remarks)
     chosen = {c.stem: (c.in_file, c.unit.suffix if c.unit else "") for c in found}

@@ -36,7 +36,7 @@ def load(text: str, *settings: str) -> Profile:
 def problem_of(text: str, *settings: str) -> str:
     with pytest.raises(ProfileError) as caught:
         load(text, *settings)
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.complaints
     return str(problem)
 
 

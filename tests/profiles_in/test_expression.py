@@ -70,7 +70,7 @@ TREES = st.recursive(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(TREES)
 def test_random_expressions_agree_with_the_complex_step(text: str) -> None:
     t = np.array([0.3, 1.7, 4.9])
@@ -211,7 +211,7 @@ def test_t_is_refused_where_it_means_nothing() -> None:
     assert parse_expression("pi/2", variable=False).at(np.zeros(1))[0][0] == math.pi / 2
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.text(alphabet="0123456789tepi+-*/(),. sincoabmx_ =;'\n", max_size=40))
 def test_any_text_is_an_expression_or_refused(text: str) -> None:
     words = ""

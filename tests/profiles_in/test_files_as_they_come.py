@@ -26,7 +26,7 @@ def load(text: str | bytes, **how: Any) -> Profile:
 def problems_of(text: str | bytes, **how: Any) -> list[str]:
     with pytest.raises(ProfileError) as caught:
         load(text, **how)
-    return [str(problem) for problem in caught.value.problems]
+    return [str(problem) for problem in caught.value.complaints]
 
 
 def rates(profile: Profile) -> np.ndarray:
@@ -204,7 +204,7 @@ def test_yaml_names_the_dialect_of_its_samples(tmp_path: Path) -> None:
     path.write_text(head + ", separator: '#', decimal: 1}\n")
     with pytest.raises(ProfileError) as caught:
         load_profile(path)
-    lines = [str(problem) for problem in caught.value.problems]
+    lines = [str(problem) for problem in caught.value.complaints]
     assert "samples.separator: must be ',', ';', '|', tab or space, is '#'" in lines[0]
     assert "samples.decimal: must be text, is 1" in lines[1]
 
@@ -234,7 +234,7 @@ def test_mutated_files_are_read_or_refused(seed: int, tmp_path: Path) -> None:
             profile = load_profile(path, **how)
         except ProfileError as error:
             outcomes.add("refused")
-            lines = [str(problem) for problem in error.problems]
+            lines = [str(problem) for problem in error.complaints]
             assert lines
             assert all(line.isprintable() for line in lines)
         else:

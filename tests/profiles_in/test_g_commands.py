@@ -33,7 +33,7 @@ def command_of(profile: Profile) -> GCommand:
 def problems_of(text: str) -> list[str]:
     with pytest.raises(ProfileError) as caught:
         load(text)
-    return [str(problem) for problem in caught.value.problems]
+    return [str(problem) for problem in caught.value.complaints]
 
 
 def test_onsets_make_ramps_holds_and_their_times() -> None:

@@ -28,7 +28,7 @@ def load(text: str, *settings: str, part: int | None = None) -> Profile:
 def problems_of(text: str, *settings: str) -> list[str]:
     with pytest.raises(ProfileError) as caught:
         load(text, *settings)
-    return [str(problem) for problem in caught.value.problems]
+    return [str(problem) for problem in caught.value.complaints]
 
 
 def test_a_gap_is_a_step_that_is_long_among_the_others() -> None:

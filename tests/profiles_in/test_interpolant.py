@@ -34,7 +34,7 @@ def test_it_is_the_monotone_cubic_of_scipy(seed: int, count: int) -> None:
     np.testing.assert_allclose(found.middle, found.at(0.5), rtol=0, atol=1e-14)
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=200)
 @given(
     steps=st.lists(st.floats(1e-3, 10.0), min_size=1, max_size=8),
     values=st.lists(st.floats(-5.0, 5.0), min_size=27, max_size=27),

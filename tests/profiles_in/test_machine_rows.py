@@ -17,7 +17,7 @@ OWN = LIMITS + "rows: [{theta: -arm}, {a_m: 7.3, theta: fork}, {alpha_deg: 90, t
 def problems_of(text: str) -> list[str]:
     with pytest.raises(ProfileError) as caught:
         parse_machine(text, "m.yaml")
-    return [str(problem) for problem in caught.value.problems]
+    return [str(problem) for problem in caught.value.complaints]
 
 
 def edited(name: str, text: str = WITH_ROWS, length: float = 6.0) -> str:

@@ -35,7 +35,7 @@ lengths_m: {Lx: 2, Ly: 0.25}
 def problems_of(text: str) -> list[str]:
     with pytest.raises(ProfileError) as caught:
         parse_machine(text, "m.yaml")
-    return [str(problem) for problem in caught.value.problems]
+    return [str(problem) for problem in caught.value.complaints]
 
 
 def test_a_base_is_changed_where_something_is_said() -> None:

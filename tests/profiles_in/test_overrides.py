@@ -130,7 +130,7 @@ def test_a_setting_that_leads_nowhere_is_refused(setting: str, words: str) -> No
 def test_unknown_keys_and_bad_values_name_the_setting_as_their_place() -> None:
     with pytest.raises(ProfileError) as caught:
         load_profile("cobra", settings=["redction.r2=1", "reduction.r2=-1", "joints.arm_rpm[7]=2"])
-    assert sorted(str(problem) for problem in caught.value.problems) == [
+    assert sorted(str(problem) for problem in caught.value.complaints) == [
         "--set joints.arm_rpm[7]=2: joints.arm_rpm has 2 items, counted from 0",
         "--set redction.r2=1: redction: is not a key here (did you mean reduction?)",
         "--set reduction.r2=-1: reduction.r2: must be greater than 0, is -1",

@@ -26,7 +26,7 @@ def problems_of(text: str | bytes, **columns: str) -> list[str]:
     data = text.encode() if isinstance(text, str) else text
     with pytest.raises(ProfileError) as caught:
         load_profile("-", stdin=data, columns=columns)
-    return [str(problem) for problem in caught.value.problems]
+    return [str(problem) for problem in caught.value.complaints]
 
 
 def test_joint_commands_are_read_in_their_units() -> None:
@@ -181,7 +181,7 @@ def test_an_attitude_that_is_no_rotation_is_refused() -> None:
     assert line == "<stdin>:3: q0..q3: the attitude's norm is 0.5, not 1 (1 such row)"
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(
         st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=3, max_size=3),
@@ -207,14 +207,14 @@ def test_the_fast_and_the_careful_reader_read_the_same_doubles(rows: list[list[f
         np.testing.assert_array_equal(read_columns(header, [2, 0]).values, expected)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.binary(max_size=80), st.sampled_from([JOINTS, RATES, ""]))
 def test_any_bytes_are_read_or_refused(data: bytes, header: str) -> None:
     lines = ["read"]
     try:
         load_profile("-", stdin=header.encode() + data)
     except ProfileError as error:
-        lines = [str(problem) for problem in error.problems]
+        lines = [str(problem) for problem in error.complaints]
     assert lines
     assert all(line.isprintable() for line in lines)
 
@@ -236,7 +236,7 @@ def test_problems_of_the_table_and_of_the_settings_come_together() -> None:
         load_profile(
             "-", stdin=(JOINTS + "0,1,2,3\n").encode(), settings=["reduction.r2=-1", "time=3"]
         )
-    lines = [str(problem) for problem in caught.value.problems]
+    lines = [str(problem) for problem in caught.value.complaints]
     assert len(lines) == 3
     assert any("one row" in line for line in lines)
     assert any("--set reduction.r2=-1: reduction.r2: must be greater than 0" in x for x in lines)

@@ -32,7 +32,8 @@ def test_nanoseconds_of_an_epoch_have_exact_steps() -> None:
 
 @given(
     st.integers(10**6, 10**12),
-    st.lists(st.integers(1, 999), min_size=1, max_size=5),
+    # of like size: a step many times the others would be a gap
+    st.lists(st.integers(200, 999), min_size=1, max_size=5),
     st.sampled_from([1, 10**3, 10**6]),
     st.sampled_from([("s", 1), ("ms", 1000), ("us", 10**6), ("ns", 10**9)]),
 )
@@ -85,5 +86,5 @@ def test_what_is_wrong_with_times_is_said_with_all_their_digits(
 ) -> None:
     with pytest.raises(ProfileError) as caught:
         times(cells)
-    (line,) = map(str, caught.value.problems)
+    (line,) = map(str, caught.value.complaints)
     assert problem in line

@@ -68,7 +68,7 @@ def test_what_goes_together(reduction: Reduction) -> None:
 def test_one_contradiction_is_one_sentence(reduction: Reduction, words: str) -> None:
     with pytest.raises(UsageError) as caught:
         require_consistent(reduction, "loop")
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.complaints
     assert problem.where == "loop: reduction"
     assert words in problem.what
 
@@ -77,4 +77,4 @@ def test_all_contradictions_come_at_once() -> None:
     both = replace(STUDY, objective="felt", optimise=("seat_yaw",), ends="match-rates")
     with pytest.raises(UsageError) as caught:
         require_consistent(both)
-    assert [problem.where for problem in caught.value.problems] == ["reduction"] * 3
+    assert [problem.where for problem in caught.value.complaints] == ["reduction"] * 3

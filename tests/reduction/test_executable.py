@@ -193,7 +193,7 @@ def test_a_smooth_motion_is_met_to_the_order_of_the_splines():
     assert errors[1] < errors[0] / 8.0
 
 
-@settings(max_examples=12, deadline=None, derandomize=True, phases=[Phase.generate])
+@settings(max_examples=12, phases=[Phase.generate])
 @given(
     rates=st.lists(
         st.tuples(*(st.integers(-9 * top, 9 * top) for top in (5, 3, 3))), min_size=8, max_size=8

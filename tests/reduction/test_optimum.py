@@ -95,7 +95,7 @@ def test_report_axes_do(cobra, pose, solve_problem):
 
 
 @pytest.mark.parametrize("axes", ["report", "seat"])
-@settings(max_examples=12, deadline=None, derandomize=True)
+@settings(max_examples=12)
 @given(amplitude=RATES, r2=st.floats(0.05, 5.0))
 def test_never_worse_than_what_it_starts_from(wave, pose, solve_problem, axes, amplitude, r2):
     scalar = pose(wave(amplitude), r2, axes=axes, r1=(0, 2, 0))
@@ -108,7 +108,7 @@ def test_never_worse_than_what_it_starts_from(wave, pose, solve_problem, axes, a
     assert joints.cost <= solution.cost * (1.0 + 1e-9) + 1e-15
 
 
-@settings(max_examples=8, deadline=None, derandomize=True)
+@settings(max_examples=8)
 @given(amplitude=RATES, r2=st.floats(0.02, 1.0), tracking=st.sampled_from([0.0, 0.3]))
 def test_inside_the_limits_for_any_maneuver(wave, pose, solve_problem, amplitude, r2, tracking):
     motion, _ = nearest_executable(DES, wave(amplitude))

@@ -174,7 +174,7 @@ def test_what_cannot_be_written_is_said_in_one_line(tmp_path: Path, name: str, w
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(FileAccessError, match=words) as caught:
         write_file(tmp_path / name, b"new", overwrite=True)
-    assert len(caught.value.problems) == 1
+    assert len(caught.value.complaints) == 1
     assert names(tmp_path) == ["file", "folder"]
 
 

@@ -213,7 +213,7 @@ def test_a_changed_byte_is_found(stored: Path, name: str) -> None:
     (stored / name).write_bytes(data)
     with pytest.raises(FileAccessError, match="is not the file that the manifest lists") as caught:
         read_run(stored)
-    assert [problem.where for problem in caught.value.problems] == [str(stored / name)]
+    assert [problem.where for problem in caught.value.complaints] == [str(stored / name)]
 
 
 def test_all_problems_are_told_at_once(stored: Path) -> None:
@@ -221,8 +221,8 @@ def test_all_problems_are_told_at_once(stored: Path) -> None:
     (stored / "metrics.json").write_bytes(b"{}")
     with pytest.raises(FileAccessError) as caught:
         read_run(stored)
-    assert len(caught.value.problems) == 2
-    assert all(str(stored) in str(problem) for problem in caught.value.problems)
+    assert len(caught.value.complaints) == 2
+    assert all(str(stored) in str(problem) for problem in caught.value.complaints)
 
 
 def rewrite(folder: Path, **changes: Any) -> None:
@@ -265,7 +265,7 @@ def test_a_manifest_that_lists_too_little_is_refused(stored: Path) -> None:
     rewrite(stored, files=[])
     with pytest.raises(FileAccessError) as caught:
         read_run(stored)
-    assert len(caught.value.problems) == 3
+    assert len(caught.value.complaints) == 3
 
 
 @pytest.mark.parametrize(

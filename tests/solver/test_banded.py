@@ -39,7 +39,7 @@ def blocks(rng, n, b, density=1.0):
     )
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 @given(
     seed=st.integers(0, 10_000),
     n=st.integers(1, 7),
@@ -88,7 +88,7 @@ def test_a_singular_system_has_no_solution(value):
         factorise(diagonal, coupling, coupling).solve(np.ones((3, 2)))
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 @given(
     seed=st.integers(0, 10_000),
     n=st.integers(1, 6),

@@ -28,4 +28,4 @@ def problems_of(text: str, *settings: str) -> list[str]:
     """Everything that is said against a text."""
     with pytest.raises(ProfileError) as caught:
         load(text, *settings)
-    return [str(problem) for problem in caught.value.problems]
+    return [str(problem) for problem in caught.value.complaints]

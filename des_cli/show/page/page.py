@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import jinja2
 
-from des_cli.report.comparison import comparison_rows, labels
-from des_cli.report.section import run_section
 from des_cli.runs_out.run_folder import StoredRun
+from des_cli.show.page.comparison import comparison_rows, labels
+from des_cli.show.page.section import run_section
 
 # HTML has no way to write these characters, not even escaped.
 _NOT_HTML = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
@@ -64,7 +64,7 @@ def render_report(runs: Sequence[StoredRun]) -> str:
     if not runs:
         raise ValueError("a report needs at least one run")
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("des_cli.report", "templates"),
+        loader=jinja2.PackageLoader("des_cli.show.page", "templates"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,

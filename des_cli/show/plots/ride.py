@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS
-from des_cli.plots.canvas import AFTER, BEFORE, DESIRED, MODIFIED, Pen, draw, note, sheet
 from des_cli.results.reading import number
+from des_cli.show.plots.canvas import AFTER, BEFORE, DESIRED, MODIFIED, Pen, draw, note, sheet
 
 Columns: TypeAlias = Mapping[str, Floats]
 Metrics: TypeAlias = Mapping[str, Any]

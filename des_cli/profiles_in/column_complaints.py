@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from des_cli.errors import Problem
+from des_cli.errors import Complaint
 from des_cli.profiles_in.column_kinds import (
     ASKED_G,
     BODY_RATES,
@@ -45,7 +45,7 @@ def several_kinds(kinds: Sequence[Kind], found: Sequence[Column]) -> str:
 
 
 def check_missing(
-    header: Header, kind: Kind, found: Sequence[Column], problems: list[Problem]
+    header: Header, kind: Kind, found: Sequence[Column], complaints: list[Complaint]
 ) -> None:
     """Say of each quantity without a usable column which one may be meant."""
     lost = False
@@ -57,7 +57,7 @@ def check_missing(
         if not words:
             lost = True
             words = [f"a column is missing: {one_of(spelled(stem))}"]
-        problems += [Problem(header.where, each) for each in words]
+        complaints += [Complaint(header.where, each) for each in words]
     unknown = [
         name
         for name in header.names
@@ -66,7 +66,7 @@ def check_missing(
     if lost and unknown:
         are = "column is" if len(unknown) == 1 else "columns are"
         what = f"{len(unknown)} {are} not known: {some(unknown)}; {_HOW_TO_NAME}"
-        problems.append(Problem(header.where, what))
+        complaints.append(Complaint(header.where, what))
 
 
 def _needed(header: Header, kind: Kind, found: Sequence[Column]) -> Sequence[str]:

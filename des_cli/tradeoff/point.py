@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from des_cli.kinematics.response import respond, respond_as_asked
-from des_cli.metrics import Measured, measure
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
@@ -30,6 +29,7 @@ from des_cli.reduction.limits import find_violations
 from des_cli.reduction.problem import Problem, pose_problem
 from des_cli.reduction.report_sweep import sweep
 from des_cli.reduction.transcription import Transcription
+from des_cli.results.metrics import Measured, measure
 
 CONSTANT_FACTORS = (0.99, 0.98, 0.95, 0.9, 0.85, 0.8, 0.7)
 """Constant p of the baseline; its joint deviation is about 1 - p."""

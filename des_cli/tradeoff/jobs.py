@@ -11,10 +11,9 @@ from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from des_cli.batch import load_job
-from des_cli.errors import DesError, ExitCode, FileAccessError, Problem
-from des_cli.failure import Failure
-from des_cli.job import Job
+from des_cli.batch.job import Job
+from des_cli.batch.runner import load_job
+from des_cli.errors import Complaint, DesError, ExitCode, Failure, FileAccessError
 from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import TradePoint
 
@@ -70,7 +69,7 @@ def check_points(jobs: Sequence[PointJob]) -> Profile:
     Raises
     ------
     DesError
-        The first kind of error that there is, with all problems of its kind.
+        The first kind of error that there is, with all complaints of its kind.
     """
     from des_cli.reduction.consistency import require_consistent
 
@@ -84,7 +83,7 @@ def check_points(jobs: Sequence[PointJob]) -> Profile:
         except DesError as error:
             errors.append(error)
     if errors:
-        same = [p for error in errors if type(error) is type(errors[0]) for p in error.problems]
+        same = [p for error in errors if type(error) is type(errors[0]) for p in error.complaints]
         raise type(errors[0])(list(dict.fromkeys(same)))
     assert profile is not None, "there is a job"
     return profile
@@ -137,7 +136,7 @@ def run_point(
             on_iteration(iteration)
 
     try:
-        from des_cli.tradeoff import baseline_points, trade_point
+        from des_cli.tradeoff.point import baseline_points, trade_point
 
         profile = load_job(job.job)
         if job.baselines:
@@ -172,7 +171,7 @@ def _result_of(job: PointJob, future: Future[PointResult]) -> PointResult:
         return future.result()
     except BrokenExecutor:
         lost = "its worker process died, perhaps for want of memory; try fewer --jobs"
-        return _failed(job, FileAccessError([Problem(job.job.source, lost)]))
+        return _failed(job, FileAccessError([Complaint(job.job.source, lost)]))
     except Exception as error:  # of the executor; the job itself raises none
         return _failed(job, error)
 

@@ -14,9 +14,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from des_cli.errors import DesError, ExitCode, FileAccessError, Problem, UsageError
-from des_cli.failure import Failure
-from des_cli.job import STANDARD_STREAM, Job, JobResult
+from des_cli.batch.job import STANDARD_STREAM, Job, JobResult
+from des_cli.errors import Complaint, DesError, ExitCode, Failure, FileAccessError, UsageError
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.stage import OnStage, untold
 
@@ -56,7 +55,7 @@ def run_job(
     try:
         return replace(result, notices=(*result.notices, *_withdraw(job, result.name)))
     except (DesError, OSError) as error:
-        return replace(result, problems=(*result.problems, *Failure.of(error).lines))
+        return replace(result, complaints=(*result.complaints, *Failure.of(error).lines))
 
 
 def run_jobs(
@@ -171,13 +170,13 @@ def require_distinct_names(jobs: Iterable[Job]) -> None:
             sources[load_job(job).name].append(job.source)
         except (DesError, OSError):
             continue
-    problems = [
-        Problem(name, f"several profiles have this name: {', '.join(same)}; rename all but one")
+    complaints = [
+        Complaint(name, f"several profiles have this name: {', '.join(same)}; rename all but one")
         for name, same in sources.items()
         if len(same) > 1
     ]
-    if problems:
-        raise UsageError(problems)
+    if complaints:
+        raise UsageError(complaints)
 
 
 def _run_job(
@@ -234,7 +233,7 @@ def _reduce_and_write(
         table = _write(job, run, target)
     except DesError as error:
         # What the solver found explains the refusal: it is told all the same.
-        lines = tuple(str(problem) for problem in error.problems)
+        lines = tuple(str(complaint) for complaint in error.complaints)
         return JobResult(job.source, profile.name, error.exit_code, lines, state="failed", **told)
     return JobResult(job.source, profile.name, written=str(target), table=table, **told)
 
@@ -263,7 +262,7 @@ def _refuse_existing(job: Job, target: Path) -> None:
     if job.table_format is not None:
         if not target.parent.is_dir():
             what = "cannot be written: the folder does not exist"
-            raise FileAccessError([Problem(str(target), what)])
+            raise FileAccessError([Complaint(str(target), what)])
         taken = target.is_file()
     else:
         taken = target.is_file() or (target.is_dir() and any(target.iterdir()))
@@ -272,7 +271,7 @@ def _refuse_existing(job: Job, target: Path) -> None:
     what = "exists; --overwrite replaces it"
     if job.resume:
         what = "is not a finished run of this very profile; --overwrite replaces it"
-    raise FileAccessError([Problem(str(target), what)])
+    raise FileAccessError([Complaint(str(target), what)])
 
 
 def _withdraw(job: Job, name: str) -> tuple[str, ...]:
@@ -330,6 +329,6 @@ def _result_of(job: Job, future: Future[JobResult]) -> JobResult:
         return future.result()
     except BrokenExecutor:
         lost = "its worker process died, perhaps for want of memory; try fewer --jobs"
-        return JobResult.failed(job, FileAccessError([Problem(job.source, lost)]))
+        return JobResult.failed(job, FileAccessError([Complaint(job.source, lost)]))
     except Exception as error:  # of the executor; the job itself raises none
         return JobResult.failed(job, error)

@@ -12,7 +12,7 @@ from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machines import DES
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import JointCommands, Profile
-from des_cli.notices import find_notices
+from des_cli.results.notices import find_notices
 
 PROFILE = Profile(
     "p",

@@ -24,7 +24,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from des_cli.model.arrays import Floats
-from des_cli.plots.thinning import thin
+from des_cli.show.plots.thinning import thin
 
 # Okabe and Ito's palette: distinct to the colour-blind, and in grey by its dashes.
 GREY, BLUE, VERMILION, GREEN = "#767676", "#0072B2", "#D55E00", "#009E73"

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from des_cli import batch
-from des_cli.batch import require_distinct_names, run_job, run_jobs
+from des_cli.batch import runner
+from des_cli.batch.job import Job, JobResult
+from des_cli.batch.pool import available_cpus, local_executor, single_blas_thread
+from des_cli.batch.runner import require_distinct_names, run_job, run_jobs
 from des_cli.errors import ExitCode, ProfileError, UsageError
-from des_cli.job import Job, JobResult
-from des_cli.pool import available_cpus, local_executor, single_blas_thread
 
 COARSE = ("time.step_s=0.25",)
 
@@ -41,14 +41,14 @@ def test_result_carries_what_a_person_needs(tmp_path: Path) -> None:
 def test_a_rejected_profile_is_a_result_and_not_an_exception() -> None:
     result = run_job(Job("cobra", settings=("time.step_s=-1",)))
     assert (result.exit_code, result.state) == (ExitCode.PROFILE, "failed")
-    assert result.problems
+    assert result.complaints
 
 
 def test_a_bug_is_a_result_with_a_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(job: Job) -> None:
         raise ZeroDivisionError("by nought")
 
-    monkeypatch.setattr(batch, "load_job", broken)
+    monkeypatch.setattr(runner, "load_job", broken)
     result = run_job(Job("cobra"))
     assert result.exit_code == ExitCode.BUG
     assert "ZeroDivisionError" in result.traceback
@@ -65,7 +65,7 @@ def pretend(monkeypatch: pytest.MonkeyPatch) -> list[str]:
             return JobResult.failed(job, ProfileError.of("bad"))
         return JobResult(job.source, job.source)
 
-    monkeypatch.setattr(batch, "run_job", run)
+    monkeypatch.setattr(runner, "run_job", run)
     return ran
 
 
@@ -108,7 +108,7 @@ def test_with_a_pool_what_had_begun_is_told_and_nothing_else_begins(
         assert go_on.wait(30)
         return JobResult(job.source, job.source)
 
-    monkeypatch.setattr(batch, "run_job", run)
+    monkeypatch.setattr(runner, "run_job", run)
     with ThreadPoolExecutor(2) as executor:
         jobs = [Job("bad"), Job("b"), *(Job(f"c{i}") for i in range(50))]
         results = []
@@ -124,9 +124,9 @@ def test_a_worker_that_dies_fails_its_job() -> None:
     with local_executor(2) as executor:
         assert executor is not None
         future = executor.submit(os._exit, 9)
-        result = batch._result_of(Job("cobra"), future)  # type: ignore[arg-type]
+        result = runner._result_of(Job("cobra"), future)  # type: ignore[arg-type]
     assert result.exit_code == ExitCode.FILE
-    assert "worker process died" in result.problems[0]
+    assert "worker process died" in result.complaints[0]
 
 
 def test_one_worker_needs_no_pool() -> None:
@@ -164,7 +164,7 @@ def test_cpus_are_counted_by_affinity() -> None:
 def test_names_that_occur_twice_are_refused_together() -> None:
     with pytest.raises(UsageError) as caught:
         require_distinct_names([Job("cobra"), Job("nowhere.yaml"), Job("cobra", settings=COARSE)])
-    assert [problem.where for problem in caught.value.problems] == ["cobra"]
+    assert [problem.where for problem in caught.value.complaints] == ["cobra"]
     require_distinct_names([Job("cobra"), Job("nowhere.yaml")])
 
 

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from des_cli.model.coriolis import COMPONENTS
-from des_cli.plots.standing import budget_words, change_words
-from des_cli.plots.weighted import weighted_component
-from des_cli.report.comparison import limits_cell
-from des_cli.report.numbers import percent, plain, words
 from des_cli.results.reading import lookup, number
 from des_cli.results.worse import worse_words
+from des_cli.show.page.comparison import limits_cell
+from des_cli.show.page.numbers import percent, plain, words
+from des_cli.show.plots.standing import budget_words, change_words
+from des_cli.show.plots.weighted import weighted_component
 
 _NAMES: Mapping[str, str] = {
     component.key: component.label if component.axes else f"the {component.label}"

@@ -9,20 +9,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
 from des_cli.model.arrays import Floats
 from des_cli.model.run import Run
 from des_cli.model.tradeoff import TradePoint
-from des_cli.plots import CAPTIONS, draw_plots, draw_tradeoff
-from des_cli.plots.canvas import AFTER, BEFORE, draw, sheet, style
-from des_cli.plots.ride import limits
-from des_cli.plots.thinning import thin
-from des_cli.plots.tradeoff import _figure
-from des_cli.plots.weighted import reduction_of, weighted_component
 from des_cli.runs_out.tables import trajectory_columns
+from des_cli.show.plots import CAPTIONS, draw_plots, draw_tradeoff
+from des_cli.show.plots.canvas import AFTER, BEFORE, draw, sheet, style
+from des_cli.show.plots.ride import limits
+from des_cli.show.plots.thinning import thin
+from des_cli.show.plots.tradeoff import _figure
+from des_cli.show.plots.weighted import reduction_of, weighted_component
 
 MakeRun = Callable[..., Run]
 
@@ -198,7 +198,6 @@ def test_rounding_is_not_blown_up_and_data_fill_the_paper() -> None:
     assert high - low < 4.5
 
 
-@settings(deadline=None)
 @given(n=st.integers(2, 3000), columns=st.integers(1, 60), seed=st.integers(0, 2**32 - 1))
 def test_thinning_keeps_every_peak(n: int, columns: int, seed: int) -> None:
     random = np.random.default_rng(seed)

@@ -6,16 +6,16 @@ import pickle
 import pytest
 
 from des_cli.errors import (
+    Complaint,
     DesError,
     ExitCode,
+    Failure,
     FileAccessError,
     NoSolutionError,
     NotReleasedError,
-    Problem,
     ProfileError,
     UsageError,
 )
-from des_cli.failure import Failure
 
 
 @pytest.mark.parametrize(
@@ -29,7 +29,7 @@ from des_cli.failure import Failure
     ],
 )
 def test_own_errors_keep_their_code_and_all_their_lines(kind: type[DesError], code: int) -> None:
-    failure = Failure.of(kind([Problem("a.yaml:1:2", "is wrong"), Problem("", "also this")]))
+    failure = Failure.of(kind([Complaint("a.yaml:1:2", "is wrong"), Complaint("", "also this")]))
     assert failure.exit_code == code
     assert failure.lines == ("a.yaml:1:2: is wrong", "also this")
     assert failure.traceback == ""

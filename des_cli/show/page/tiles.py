@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from des_cli.report.numbers import DASH, change, percent, plain
 from des_cli.results.ends import When, end_words
 from des_cli.results.reading import number
 from des_cli.results.worse import find_worse, worse_paths
+from des_cli.show.page.numbers import DASH, change, percent, plain
 
 _TOTAL = "felt.seat_angular_acceleration.magnitude"
 

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from des_cli.model.arrays import Floats
 from des_cli.model.coriolis import COMPONENTS, ComponentKey
 from des_cli.model.machine import JOINTS
-from des_cli.plots.canvas import (
+from des_cli.show.plots.canvas import (
     AFTER,
     BEFORE,
     DASHES,
@@ -34,9 +34,9 @@ from des_cli.plots.canvas import (
     stamp,
     style,
 )
-from des_cli.plots.ride import felt, limits
-from des_cli.plots.standing import budget_words, change_words, status_words
-from des_cli.plots.weighted import reduction_of, weighted_component
+from des_cli.show.plots.ride import felt, limits
+from des_cli.show.plots.standing import budget_words, change_words, status_words
+from des_cli.show.plots.weighted import reduction_of, weighted_component
 from des_cli.units import split_unit
 
 Columns: TypeAlias = Mapping[str, Floats]

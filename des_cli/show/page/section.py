@@ -10,10 +10,11 @@ from typing import Any
 
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
-from des_cli.plots import CAPTIONS, draw_plots
-from des_cli.plots.standing import budget_words
-from des_cli.report.comparison import Cell
-from des_cli.report.numbers import (
+from des_cli.results.reading import lookup, number
+from des_cli.results.worse import worse_paths
+from des_cli.runs_out.run_folder import StoredRun
+from des_cli.show.page.comparison import Cell
+from des_cli.show.page.numbers import (
     DASH,
     NO_BREAK,
     change,
@@ -22,11 +23,10 @@ from des_cli.report.numbers import (
     plain,
     words,
 )
-from des_cli.report.summary import summary_sentences
-from des_cli.report.tiles import Tile, felt_tiles
-from des_cli.results.reading import lookup, number
-from des_cli.results.worse import worse_paths
-from des_cli.runs_out.run_folder import StoredRun
+from des_cli.show.page.summary import summary_sentences
+from des_cli.show.page.tiles import Tile, felt_tiles
+from des_cli.show.plots import CAPTIONS, draw_plots
+from des_cli.show.plots.standing import budget_words
 
 # Rounding of the solver's last step is no violation.
 _ROUNDING = 1e-9

@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 
 from des_cli.model.run import Run
-from des_cli.plots import CAPTIONS
-from des_cli.report import section
-from des_cli.report.page import NOMENCLATURE, render_report
 from des_cli.runs_out.run_folder import StoredRun
 from des_cli.runs_out.tables import trajectory_columns
+from des_cli.show.page import section
+from des_cli.show.page.page import NOMENCLATURE, render_report
+from des_cli.show.plots import CAPTIONS
 
 MakeRun = Callable[..., Run]
 

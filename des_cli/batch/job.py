@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from des_cli.errors import ExitCode
-from des_cli.failure import Failure
+from des_cli.errors import ExitCode, Failure
 
 if TYPE_CHECKING:
     from des_cli.model.solution import Iteration
@@ -82,7 +81,7 @@ class JobResult:
         What was asked for, and the profile's own name (empty where it could
         not be read).
     exit_code : ExitCode
-    problems : tuple of str
+    complaints : tuple of str
         Lines that say why it failed.
     notices, violations : tuple of str
         Sentences for the user's attention, and every broken limit.
@@ -105,7 +104,7 @@ class JobResult:
     source: str
     name: str
     exit_code: ExitCode = ExitCode.DONE
-    problems: tuple[str, ...] = ()
+    complaints: tuple[str, ...] = ()
     notices: tuple[str, ...] = ()
     violations: tuple[str, ...] = ()
     metrics: Mapping[str, Any] | None = None

@@ -8,13 +8,13 @@ from typing import Any, get_args
 
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
-from des_cli.plots.standing import status_words
-from des_cli.report.numbers import DASH, change, percent, plain, words
 from des_cli.results.budgets import spent_budgets
 from des_cli.results.ends import When, end_words
 from des_cli.results.reading import lookup, number
 from des_cli.results.worse import worse_paths
 from des_cli.runs_out.run_folder import StoredRun
+from des_cli.show.page.numbers import DASH, change, percent, plain, words
+from des_cli.show.plots.standing import status_words
 
 
 @dataclass(frozen=True, slots=True)

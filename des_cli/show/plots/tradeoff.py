@@ -11,7 +11,18 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from des_cli.model.tradeoff import TradePoint
-from des_cli.plots.canvas import BLUE, DASHES, GREEN, GREY, INK, VERMILION, Pen, png, sheet, style
+from des_cli.show.plots.canvas import (
+    BLUE,
+    DASHES,
+    GREEN,
+    GREY,
+    INK,
+    VERMILION,
+    Pen,
+    png,
+    sheet,
+    style,
+)
 
 FREE = Pen("free", GREEN, (0, (2.5, 1.2)), marker="D")
 PER_JOINT = Pen("per joint", BLUE, marker="o")
