@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
+from des_cli.batch.source import Source, split_source
 from des_cli.errors import ExitCode, Failure
 
 if TYPE_CHECKING:
@@ -14,28 +15,13 @@ if TYPE_CHECKING:
 
 TableFormat: TypeAlias = Literal["csv", "ndjson", "json", "parquet"]
 
-STANDARD_STREAM = "-"
-"""Stands for stdin as a source and for stdout as an output."""
-
 
 @dataclass(frozen=True, slots=True)
-class Job:
-    """What to do with one profile.
+class Output:
+    """Where the reduction of a profile goes, and in what form.
 
     Parameters
     ----------
-    source : str
-        A path, the name of a built-in profile, or ``-``.
-    settings : tuple of str
-        Overrides, ``reduction.r2=0.2``.
-    columns : mapping of str to str
-        Names of a CSV's columns: ours to the file's.
-    separator, decimal : str, optional
-        How a CSV is written.
-    stdin : bytes, optional
-        What ``-`` stands for.
-    part : int, optional
-        Which stretch between the gaps of a record that is split.
     out : str
         The run folder, the file of the command table, or ``-`` for a table
         that comes back in the result.
@@ -51,13 +37,6 @@ class Job:
         Load and check, but neither solve nor write.
     """
 
-    source: str
-    settings: tuple[str, ...] = ()
-    columns: Mapping[str, str] = field(default_factory=dict)
-    separator: str | None = None
-    decimal: str | None = None
-    stdin: bytes | None = None
-    part: int | None = None
     out: str = "runs"
     out_is_parent: bool = True
     table_format: TableFormat | None = None
@@ -69,6 +48,30 @@ class Job:
     def destination(self, name: str) -> Path:
         """Return where a profile of this name is written."""
         return Path(self.out) / name if self.out_is_parent else Path(self.out)
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """What to do with one profile: read it, reduce it, write it."""
+
+    source: Source
+    output: Output = Output()
+
+    @property
+    def label(self) -> str:
+        """What a message about it begins with."""
+        return self.source.name
+
+
+def split_jobs(jobs: Iterable[Job]) -> list[Job]:
+    """Make a job of every stretch of the records that are split at their gaps."""
+    found: list[Job] = []
+    for job in jobs:
+        parts = split_source(job.source)
+        several = len(parts) > 1
+        output = replace(job.output, out_is_parent=True) if several else job.output
+        found += [Job(part, output) for part in parts]
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,12 +118,17 @@ class JobResult:
     table: bytes | None = None
     traceback: str = ""
 
+    @property
+    def ok(self) -> bool:
+        """Whether the job did not fail."""
+        return self.exit_code == ExitCode.DONE
+
     @classmethod
     def failed(cls, job: Job, error: BaseException, name: str = "") -> JobResult:
         """Make the result of a job that an exception ended."""
         failure = Failure.of(error)
         return cls(
-            job.source,
+            job.source.name,
             name,
             failure.exit_code,
             failure.lines,

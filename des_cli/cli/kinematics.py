@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
-from des_cli.batch.job import Job, TableFormat
+from des_cli.batch.job import TableFormat
+from des_cli.batch.source import Source
 from des_cli.cli.options import TABLE_FORMATS, verbosity_options
-from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_job
+from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_of
 from des_cli.cli.state_options import in_si, option_name, state_options
 from des_cli.cli.stdout import write_data
 from des_cli.model.machine import JOINTS, Seat
@@ -65,7 +66,7 @@ def kinematics(
         raise click.UsageError("parquet is not for a terminal: redirect stdout.")
     if profile is not None:
         _refuse_beside_profile(given)
-        source = source_job(
+        source = source_of(
             profile,
             settings,
             machine=machine,
@@ -107,15 +108,15 @@ def _state(si: Mapping[tuple[str, str], float], choice: str, form: str) -> bytes
     return encode_state(report, cast(TableFormat, form), about)
 
 
-def _motion(source: Job, form: str) -> bytes | str:
+def _motion(source: Source, form: str) -> bytes | str:
     """Return the kinematics of a profile's desired motion."""
-    from des_cli.batch.runner import load_job
+    from des_cli.batch.source import load_source
     from des_cli.cli.state_text import motion_text
     from des_cli.reduction.desired import find_desired
     from des_cli.runs_out.state_tables import encode_states
     from des_cli.study.state import report_motion
 
-    profile = load_job(source)
+    profile = load_source(source)
     motion = find_desired(profile).motion
     t: Floats = motion.t
     report = report_motion(profile.machine, profile.seat, motion)

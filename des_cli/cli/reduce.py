@@ -7,7 +7,8 @@ from typing import Any, NoReturn, cast
 
 import click
 
-from des_cli.batch.job import STANDARD_STREAM, Job, TableFormat
+from des_cli.batch.job import Job, JobResult, Output, TableFormat
+from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     DEFAULT_RUNS,
@@ -22,7 +23,7 @@ from des_cli.cli.source_options import (
     profile_argument,
     read_stdin,
     setting_options,
-    source_job,
+    source_of,
 )
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.summary import exit_code_of, print_closing, print_result
@@ -102,43 +103,50 @@ def reduce(
     if out == STANDARD_STREAM and not dry_run:
         refuse_binary_on_terminal(form)
     stdin = read_stdin(profiles)
+    output = Output(
+        out=DEFAULT_RUNS if out is None else out,
+        out_is_parent=out is None or len(profiles) > 1,
+        table_format=form,
+        plots=not no_plots,
+        overwrite=overwrite,
+        resume=resume,
+        dry_run=dry_run,
+    )
     batch = [
-        source_job(
-            source,
-            (*settings, *reduction_settings(reduction)),
-            machine=machine,
-            stdin=stdin,
-            columns=columns,
-            separator=separator,
-            decimal=decimal,
-            out=DEFAULT_RUNS if out is None else out,
-            out_is_parent=out is None or len(profiles) > 1,
-            table_format=form,
-            plots=not no_plots,
-            overwrite=overwrite,
-            resume=resume,
-            dry_run=dry_run,
+        Job(
+            source_of(
+                name,
+                (*settings, *reduction_settings(reduction)),
+                machine=machine,
+                stdin=stdin,
+                columns=columns,
+                separator=separator,
+                decimal=decimal,
+            ),
+            output,
         )
-        for source in profiles
+        for name in profiles
     ]
     return _run(console, _with_parts(batch), jobs, keep_going)
 
 
 def _with_parts(batch: list[Job]) -> list[Job]:
     """Return a job for each stretch of a record that is split at its gaps."""
+    from des_cli.batch.job import split_jobs
     from des_cli.batch.pool import single_blas_thread
-    from des_cli.batch.runner import split_jobs
 
     with single_blas_thread():  # numpy may be imported here
         parts = split_jobs(batch)
-    if len(parts) > 1 and parts[0].table_format is not None:
+    if len(parts) > 1 and parts[0].output.table_format is not None:
         _refuse_one_table()
     return parts
 
 
 def _run(console: Console, batch: list[Job], jobs: int, keep_going: bool) -> ExitCode:
+    from des_cli.batch.execution import run_job
     from des_cli.batch.pool import local_executor
-    from des_cli.batch.runner import require_distinct_names, run_jobs
+    from des_cli.batch.runner import run_tasks
+    from des_cli.batch.source import require_distinct_names
 
     workers = min(jobs, len(batch)) if jobs else jobs
     alone = len(batch) == 1
@@ -148,10 +156,12 @@ def _run(console: Console, batch: list[Job], jobs: int, keep_going: bool) -> Exi
         console.working(len(batch)) as line,
     ):
         if not alone:
-            require_distinct_names(batch)
+            require_distinct_names(job.source for job in batch)
         live = executor is None and console.verbosity >= VERBOSE
-        for result in run_jobs(
+        for result in run_tasks(
             batch,
+            run_job,
+            JobResult.failed,
             executor,
             keep_going=keep_going,
             on_iteration=console.follow(line, log=live),

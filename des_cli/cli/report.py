@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from des_cli.batch.job import STANDARD_STREAM
+from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.console import Console
 from des_cli.cli.options import DEFAULT_RUNS, verbosity_options
 from des_cli.cli.stdout import write_data

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import click
 
-from des_cli.batch.job import STANDARD_STREAM, Job
+from des_cli.batch.source import STANDARD_STREAM, Source
 from des_cli.cli.conditioning_options import conditioning_options
 from des_cli.errors import Complaint, FileAccessError
 
@@ -87,19 +87,20 @@ def machine_settings(machine: str | None) -> tuple[str, ...]:
     return () if machine is None else (f"machine={json.dumps(machine, ensure_ascii=False)}",)
 
 
-def source_job(
-    source: str,
+def source_of(
+    name: str,
     settings: tuple[str, ...],
     *,
     machine: str | None,
     stdin: bytes | None,
     **read: Any,
-) -> Job:
-    """Return a job that reads a profile as the options of `setting_options` say.
+) -> Source:
+    """Return where a profile comes from, as the options of `setting_options` say.
 
     Parameters
     ----------
-    source : str
+    name : str
+        Of a file or a built-in profile, or ``-``.
     settings : tuple of str
         Of ``--set`` and what comes to the command among them.
     machine : str, optional
@@ -109,10 +110,10 @@ def source_job(
     **read
         Values of ``--column``, ``--separator`` and ``--decimal``.
     """
-    return Job(
-        source,
+    return Source(
+        name,
         settings=(*machine_settings(machine), *settings),
-        stdin=stdin if source == STANDARD_STREAM else None,
+        stdin=stdin if name == STANDARD_STREAM else None,
         **read,
     )
 
@@ -127,9 +128,9 @@ def read_stdin(sources: tuple[str, ...]) -> bytes | None:
     FileAccessError
         If this process was started with a closed stdin.
     """
-    if "-" not in sources:
+    if STANDARD_STREAM not in sources:
         return None
-    if sources.count("-") > 1:
+    if sources.count(STANDARD_STREAM) > 1:
         raise click.UsageError("stdin ('-') can be read only once.")
     if sys.stdin is None:
         raise FileAccessError([Complaint("stdin", "is closed")])

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from des_cli.batch.job import STANDARD_STREAM, Job, TableFormat
+from des_cli.batch.job import TableFormat
+from des_cli.batch.source import STANDARD_STREAM, Source
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     TABLE_FORMATS,
@@ -18,7 +19,7 @@ from des_cli.cli.options import (
     reduction_settings,
     verbosity_options,
 )
-from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_job
+from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_of
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.sweep_options import (
     DEFAULT_BUDGETS,
@@ -130,7 +131,7 @@ def sweep(
     if form != "text" and out in (None, STANDARD_STREAM):
         refuse_binary_on_terminal(form)
     _refuse_existing(out, plot, overwrite)
-    source = source_job(
+    source = source_of(
         profile,
         settings,
         machine=machine,
@@ -144,7 +145,7 @@ def sweep(
 
 
 def _plan(
-    source: Job,
+    source: Source,
     reduction: dict[str, Any],
     budgets: Budgets | None,
     r2s: tuple[float, ...],
@@ -161,7 +162,7 @@ def _plan(
         # what a budget buys is meant inside the limits, and so is what it is compared with
         base = reduction | {"limits": reduction["limits"] or "enforce"}
 
-    def job(own: Mapping[str, Any], *further: str) -> Job:
+    def read(own: Mapping[str, Any], *further: str) -> Source:
         settings = (*source.settings, *reduction_settings({**base, **own}), *further)
         return replace(source, settings=settings)
 
@@ -170,11 +171,11 @@ def _plan(
         for value in values:
             own: dict[str, Any] = {"method": "minimum", "algorithm": "optimum", "control": control}
             if budgets:  # r2 is the study's then
-                point = job(own | {"r2": None}, f"reduction.budget.{swept}={value!r}")
+                point = read(own | {"r2": None}, f"reduction.budget.{swept}={value!r}")
             else:
-                point = job(own | {"r2": repr(value)})
+                point = read(own | {"r2": repr(value)})
             jobs.append(PointJob(point, cast("Control", control), swept, value))
-    return [*jobs, PointJob(job({"budget": None}), weights=r2s)]
+    return [*jobs, PointJob(read({"budget": None}), weights=r2s)]
 
 
 def _run(
@@ -187,7 +188,8 @@ def _run(
     overwrite: bool,
 ) -> ExitCode:
     from des_cli.batch.pool import local_executor
-    from des_cli.tradeoff.jobs import check_points, exit_code_of, run_points
+    from des_cli.batch.runner import run_tasks
+    from des_cli.tradeoff.jobs import PointResult, check_points, exit_code_of, run_point
 
     results = []
     with (
@@ -197,10 +199,17 @@ def _run(
         line.stage("reading")
         profile = check_points(jobs)
         live = executor is None and console.verbosity >= VERBOSE
-        on_iteration = console.follow(line, log=live)
-        for result in run_points(jobs, executor, on_iteration, line.stage):
+        for result in run_tasks(
+            jobs,
+            run_point,
+            PointResult.failed,
+            executor,
+            keep_going=True,
+            on_iteration=console.follow(line, log=live),
+            on_stage=line.stage,
+            on_finished=line.advance,
+        ):
             results.append(result)
-            line.advance()
             _tell(console, result, live)
     points = [point for result in results for point in result.points]
     from des_cli.tradeoff.point import doubts

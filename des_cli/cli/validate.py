@@ -20,7 +20,7 @@ from des_cli.cli.source_options import (
     profile_argument,
     read_stdin,
     setting_options,
-    source_job,
+    source_of,
 )
 from des_cli.cli.stdout import write_data
 from des_cli.errors import DesError, ExitCode, Failure
@@ -65,15 +65,15 @@ def validate(
     profile is rejected, 2 if its reduction asks for what excludes each other,
     1 if a file cannot be read.
     """
-    from des_cli.batch.runner import load_job, split_jobs
+    from des_cli.batch.source import load_source, split_source
     from des_cli.reduction.consistency import require_consistent
 
     stdin = read_stdin(profiles)
     codes = set()
     with console.working(len(profiles)) as line:
-        jobs = split_jobs(
-            source_job(
-                source,
+        sources = [
+            source_of(
+                name,
                 (*settings, *reduction_settings(reduction)),
                 machine=machine,
                 stdin=stdin,
@@ -81,24 +81,23 @@ def validate(
                 separator=separator,
                 decimal=decimal,
             )
-            for source in profiles
-        )
-        for job in jobs:
-            source = job.source
-            line.stage(f"reading {source}")
+            for name in profiles
+        ]
+        for source in [part for whole in sources for part in split_source(whole)]:
+            line.stage(f"reading {source.name}")
             try:
-                profile = load_job(job)
+                profile = load_source(source)
                 require_consistent(profile.reduction, profile.name)
             except (DesError, OSError) as error:
                 failure = Failure.of(error)
                 codes.add(failure.exit_code)
                 console.failure(failure)
                 if form == "json":
-                    _write(console, json.dumps(_rejected(source, failure)))
+                    _write(console, json.dumps(_rejected(source.name, failure)))
             else:
                 for remark in profile.remarks:
-                    console.say(f"{source}: {remark}")
-                facts = understood(source, profile)
+                    console.say(f"{source.name}: {remark}")
+                facts = understood(source.name, profile)
                 _write(console, json.dumps(facts) if form == "json" else _line(facts))
             line.advance()
     # Several kinds of failure have no code in common but that of a batch.

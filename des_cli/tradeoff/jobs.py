@@ -6,14 +6,12 @@ machine and a cluster's executor are one code path.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from des_cli.batch.job import Job
-from des_cli.batch.runner import load_job
-from des_cli.errors import Complaint, DesError, ExitCode, Failure, FileAccessError
+from des_cli.batch.source import Source, load_source
+from des_cli.errors import DesError, ExitCode, Failure
 from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import TradePoint
 
@@ -29,19 +27,24 @@ class PointJob:
 
     Parameters
     ----------
-    job : Job
-        The profile with its settings; where it would be written means nothing here.
+    source : Source
+        The profile with its settings.
     control, swept, value
         What the settings ask for, to name the point by; empty for the baselines.
     weights : tuple of float
         r2 of the study's law, for the baselines.
     """
 
-    job: Job
+    source: Source
     control: Control = "scalar"
     swept: str = ""
     value: float = 0.0
     weights: tuple[float, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """What a message about it begins with."""
+        return self.source.name
 
     @property
     def baselines(self) -> bool:
@@ -56,6 +59,21 @@ class PointResult:
     points: tuple[TradePoint, ...]
     log: tuple[Iteration, ...] = ()
     failure: Failure | None = None
+
+    @property
+    def ok(self) -> bool:
+        """Whether the job did not fail."""
+        return self.failure is None
+
+    @classmethod
+    def failed(cls, job: PointJob, error: Exception) -> PointResult:
+        """Make the result of a job that an exception ended."""
+        failure = Failure.of(error)
+        if job.baselines:
+            return cls((), failure=failure)
+        message = "; ".join(failure.lines)
+        point = TradePoint("optimum", job.control, job.swept, job.value, "failed", message=message)
+        return cls((point,), failure=failure)
 
 
 def check_points(jobs: Sequence[PointJob]) -> Profile:
@@ -77,7 +95,7 @@ def check_points(jobs: Sequence[PointJob]) -> Profile:
     errors: list[DesError] = []
     for each in jobs:
         try:
-            profile = load_job(each.job)
+            profile = load_source(each.source)
             if not each.baselines:
                 require_consistent(profile.reduction)
         except DesError as error:
@@ -87,35 +105,6 @@ def check_points(jobs: Sequence[PointJob]) -> Profile:
         raise type(errors[0])(list(dict.fromkeys(same)))
     assert profile is not None, "there is a job"
     return profile
-
-
-def run_points(
-    jobs: Sequence[PointJob],
-    executor: Executor | None = None,
-    on_iteration: Callable[[Iteration], None] | None = None,
-    on_stage: OnStage = untold,
-) -> Iterator[PointResult]:
-    """Yield the result of every job, in the order of the jobs.
-
-    Parameters
-    ----------
-    jobs : sequence of PointJob
-    executor : Executor, optional
-        Runs them; without one they run here, one after the other.
-    on_iteration, on_stage : callable, optional
-        For jobs that run here.
-    """
-    if executor is None:
-        for job in jobs:
-            yield run_point(job, on_iteration, on_stage)
-        return
-    futures = [executor.submit(run_point, job) for job in jobs]
-    try:
-        for job, future in zip(jobs, futures, strict=True):
-            yield _result_of(job, future)
-    finally:
-        for future in futures:
-            future.cancel()
 
 
 def run_point(
@@ -138,7 +127,7 @@ def run_point(
     try:
         from des_cli.tradeoff.point import baseline_points, trade_point
 
-        profile = load_job(job.job)
+        profile = load_source(job.source)
         if job.baselines:
             on_stage("baselines")
             return PointResult(tuple(baseline_points(profile, job.weights)))
@@ -146,7 +135,7 @@ def run_point(
         # of several budgets, only the job knows which one is swept
         return PointResult((replace(point, swept=job.swept, value=job.value),), tuple(log))
     except Exception as error:
-        return _failed(job, error)
+        return PointResult.failed(job, error)
 
 
 def exit_code_of(results: Sequence[PointResult]) -> ExitCode:
@@ -164,22 +153,3 @@ def exit_code_of(results: Sequence[PointResult]) -> ExitCode:
         return ExitCode.NO_SOLUTION
     done = not failures and all(point.answered for point in asked)
     return ExitCode.DONE if done else ExitCode.FILE
-
-
-def _result_of(job: PointJob, future: Future[PointResult]) -> PointResult:
-    try:
-        return future.result()
-    except BrokenExecutor:
-        lost = "its worker process died, perhaps for want of memory; try fewer --jobs"
-        return _failed(job, FileAccessError([Complaint(job.job.source, lost)]))
-    except Exception as error:  # of the executor; the job itself raises none
-        return _failed(job, error)
-
-
-def _failed(job: PointJob, error: Exception) -> PointResult:
-    failure = Failure.of(error)
-    if job.baselines:
-        return PointResult((), failure=failure)
-    message = "; ".join(failure.lines)
-    point = TradePoint("optimum", job.control, job.swept, job.value, "failed", message=message)
-    return PointResult((point,), failure=failure)

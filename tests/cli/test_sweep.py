@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 
-from des_cli.batch.runner import load_job
+from des_cli.batch.source import load_source
 from des_cli.cli import sweep as module
 from des_cli.errors import ExitCode
 from des_cli.runs_out.point_table import COLUMNS
@@ -95,6 +95,10 @@ def test_numpy_is_not_imported_before_the_number_of_threads_is_set(
     assert (done.returncode, done.stdout) == (0, "False\n"), done.stderr
 
 
+def budgets_of(job: PointJob) -> dict[str, float]:
+    return {b.metric: b.most for b in load_source(job.source).reduction.budget}
+
+
 def planned(invoke, monkeypatch: pytest.MonkeyPatch, *args: str) -> list[tuple]:
     """Control, swept value and budgets of every point that a sweep would compute."""
     jobs: list[PointJob] = []
@@ -103,7 +107,11 @@ def planned(invoke, monkeypatch: pytest.MonkeyPatch, *args: str) -> list[tuple]:
         result = invoke("sweep", *args)
     assert result.exit_code == 0, result.stderr
     return [
-        (job.control, job.value, {b.metric: b.most for b in load_job(job.job).reduction.budget})
+        (
+            job.control,
+            job.value,
+            {b.metric: b.most for b in load_source(job.source).reduction.budget},
+        )
         for job in jobs
         if not job.baselines
     ]

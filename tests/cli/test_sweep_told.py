@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from des_cli.batch.job import Job
+from des_cli.batch.source import Source
 from des_cli.cli.tradeoff_text import point_line, points_text
 from des_cli.errors import ExitCode, Failure
 from des_cli.model.tradeoff import TradePoint
@@ -46,7 +46,7 @@ def test_a_point_is_named_after_what_is_swept(
     small: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("des_cli.tradeoff.point.trade_point", lambda *_: replace(POINT, swept=G))
-    job = PointJob(Job(str(tmp_path / small)), "scalar", RATE, 0.2)
+    job = PointJob(Source(str(tmp_path / small)), "scalar", RATE, 0.2)
     [point] = run_point(job).points
     assert (point.swept, point.value) == (RATE, 0.2)
 
