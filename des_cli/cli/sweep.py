@@ -212,7 +212,7 @@ def _run(
             results.append(result)
             _tell(console, result, live)
     points = [point for result in results for point in result.points]
-    from des_cli.tradeoff.point import doubts
+    from des_cli.tradeoff.curve import doubts
 
     console.warn(doubts(points))
     about = f"{profile.name}, {_objective(profile)}"

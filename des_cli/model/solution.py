@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from des_cli.model.arrays import Floats, freeze
 from des_cli.model.motion import Motion
 
@@ -84,6 +86,46 @@ class Solution:
         n = len(self.modified.t)
         freeze(self, "control", (n, None))
         freeze(self, "adjoint", (n, None))
+
+    @classmethod
+    def refused(
+        cls,
+        status: Status,
+        message: str,
+        desired: Motion,
+        *,
+        controls: int,
+        costates: int,
+        log: tuple[Iteration, ...] = (),
+    ) -> Solution:
+        """Return what stands where a solution cannot be, or is not looked for.
+
+        The motion is the desired one, its factors are one, and nothing has a cost.
+
+        Parameters
+        ----------
+        status : str
+        message : str
+            Why.
+        desired : Motion
+        controls, costates : int
+            Columns of ``control`` and ``adjoint``.
+        log : tuple of Iteration
+            Of what was tried before.
+        """
+        n, nan = len(desired.t), float("nan")
+        return cls(
+            status=status,
+            message=message,
+            control=np.ones((n, controls)),
+            modified=desired,
+            adjoint=np.zeros((n, costates)),
+            cost=nan,
+            cost_unreduced=nan,
+            optimality=nan,
+            iterations=len(log),
+            log=log,
+        )
 
     @property
     def usable(self) -> bool:

@@ -20,6 +20,9 @@ from des_cli.study.backward_forward import adjoint_along, factors_of, follow
 RAN_AWAY = 100.0
 """Growth of the weighted Coriolis beyond which the study's sweep is no baseline."""
 
+NOTHING = 1e-24
+"""Integral of the squared weighted Coriolis that is rounding, and cannot be reduced."""
+
 MOST_SECANTS, CLOSE = 60, 1e-14
 """Evaluations of a constant factor's energy at the most, and how close its bracket gets."""
 
@@ -58,7 +61,6 @@ def compare(problem: Problem, modified: Motion, chain: Chain | None = None) -> B
     before = weighted_energy(problem, problem.reference)
     turned = problem if chain is None else replace(problem, chain=chain)
     after = weighted_energy(turned, modified)
-    nothing = before <= 1e-24
     swept = _sweep_once(problem)
     swept_energy = np.inf if swept is None else weighted_energy(problem, swept)
     if swept_energy > RAN_AWAY * before:
@@ -66,12 +68,23 @@ def compare(problem: Problem, modified: Motion, chain: Chain | None = None) -> B
     p = _constant_factor(problem, before, after) if before > after else 1.0
     constant = follow(desired, np.full((len(desired.t), 1), p))
     return Baselines(
-        reduction=None if nothing else 1.0 - after / before,
-        sweep_reduction=None if nothing or swept is None else 1.0 - swept_energy / before,
+        reduction=_reduction(before, after),
+        sweep_reduction=None if swept is None else _reduction(before, swept_energy),
         sweep_deviation=None if swept is None else joint_deviation(desired, swept),
         constant_p=p,
         constant_deviation=joint_deviation(desired, constant),
     )
+
+
+def objective_reduction(problem: Problem, modified: Motion) -> float | None:
+    """Return the reduction of int c' R1 c by a motion, None where there is nothing to reduce."""
+    before = weighted_energy(problem, problem.reference)
+    return _reduction(before, weighted_energy(problem, modified))
+
+
+def _reduction(before: float, after: float) -> float | None:
+    """Return 1 - after / before, None where there was nothing before."""
+    return None if before <= NOTHING else 1.0 - after / before
 
 
 def _sweep_once(problem: Problem) -> Motion | None:

@@ -88,7 +88,9 @@ def find_motion(
     refusal = change.refusal(reduction)
     if trouble or refusal:
         status: Status = "infeasible" if trouble else "changed"
-        solution = not_attempted(problem, trouble or refusal, status)
+        solution = Solution.refused(
+            status, trouble or refusal, desired, controls=problem.controls, costates=3
+        )
         return Found(desired, profile.seat, problem, problem, solution, reduction.budget)
     on_stage("factors on the desired rates")
     budgets = change.widened(reduction)
@@ -144,20 +146,3 @@ def solve(
         posed = pose_budget(problem)
         return posed, spend_budgets(posed, reduction.budget, search)
     return problem, find_optimum(problem, search)
-
-
-def not_attempted(problem: Problem, why: str, status: Status) -> Solution:
-    """Return the solution of a problem that has no motion to start from, or a changed one."""
-    n = len(problem.desired.t)
-    nan = float("nan")
-    return Solution(
-        status=status,
-        message=why,
-        control=np.ones((n, problem.controls)),
-        modified=problem.desired,
-        adjoint=np.zeros((n, 3)),
-        cost=nan,
-        cost_unreduced=nan,
-        optimality=nan,
-        iterations=0,
-    )

@@ -125,7 +125,8 @@ def run_point(
             on_iteration(iteration)
 
     try:
-        from des_cli.tradeoff.point import baseline_points, trade_point
+        from des_cli.tradeoff.baselines import baseline_points
+        from des_cli.tradeoff.point import trade_point
 
         profile = load_source(job.source)
         if job.baselines:

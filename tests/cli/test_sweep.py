@@ -15,8 +15,8 @@ from des_cli.batch.source import load_source
 from des_cli.cli import sweep as module
 from des_cli.errors import ExitCode
 from des_cli.runs_out.point_table import COLUMNS
+from des_cli.tradeoff.baselines import CONSTANT_FACTORS
 from des_cli.tradeoff.jobs import PointJob
-from des_cli.tradeoff.point import CONSTANT_FACTORS
 from tests.support.points import curve, rows_of
 
 

@@ -9,8 +9,8 @@ from des_cli.batch.source import Source
 from des_cli.cli.tradeoff_text import point_line, points_text
 from des_cli.errors import ExitCode, Failure
 from des_cli.model.tradeoff import TradePoint
+from des_cli.tradeoff.curve import doubts
 from des_cli.tradeoff.jobs import PointJob, PointResult, exit_code_of, run_point
-from des_cli.tradeoff.point import doubts
 
 RATE, G = "seat_rate_deviation_relative", "seat_g_rms_error_g"
 

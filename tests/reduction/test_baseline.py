@@ -11,7 +11,12 @@ from scipy.optimize import brentq
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
-from des_cli.reduction.baseline import compare, joint_deviation, weighted_energy
+from des_cli.reduction.baseline import (
+    compare,
+    joint_deviation,
+    objective_reduction,
+    weighted_energy,
+)
 from des_cli.reduction.report_sweep import sweep
 from des_cli.reduction.transcription import Transcription
 
@@ -27,6 +32,7 @@ def test_the_constant_factor_of_a_solution_that_is_one(cobra, pose, axes, p):
     problem = pose(cobra(200), axes=axes, r1=(1, 2, 0.5))
     modified = constant(problem, p)
     found = compare(problem, modified)
+    assert objective_reduction(problem, modified) == found.reduction
     energy = weighted_energy(problem, modified)
     before = weighted_energy(problem, problem.desired)
     assert found.reduction == pytest.approx(1.0 - energy / before, rel=1e-12)

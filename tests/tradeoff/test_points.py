@@ -6,7 +6,7 @@ import pytest
 from des_cli.kinematics.desired import make_desired
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.profiles_in.load import load_profile
-from des_cli.tradeoff.point import CONSTANT_FACTORS
+from des_cli.tradeoff.baselines import CONSTANT_FACTORS
 from tests.support.points import COARSE, STUDY, Rows, column, curve, rows_of
 
 

@@ -98,17 +98,12 @@ class Answers:
 
     def refused(self, desired: Motion, why: str, status: Status = "infeasible") -> FreeResult:
         """Return that there is no motion to be found, or to be looked for."""
-        nan = float("nan")
-        solution = Solution(
-            status=status,
-            message=why,
-            control=self._factors(desired, desired),
-            modified=desired,
-            adjoint=np.zeros((self._rows, 0)),
-            cost=nan,
-            cost_unreduced=nan,
-            optimality=nan,
-            iterations=len(self.log.lines),
+        solution = Solution.refused(
+            status,
+            why,
+            desired,
+            controls=3 if self._tied else 0,
+            costates=0,
             log=tuple(self.log.lines),
         )
         return FreeResult(desired, solution, self.task.seat, self.budgets)
@@ -151,9 +146,14 @@ class Answers:
             return "iteration-limit", f"{off} after {steps}; raise max_iterations ({limit})"
         return "diverged", f"no step makes it better although {off}; {steps}"
 
+    @property
+    def _tied(self) -> bool:
+        """Whether the motion has factors on the desired rates, one a joint."""
+        return self.task.reduction.control == "per-joint"
+
     def _factors(self, modified: Motion, desired: Motion) -> Floats:
         """Return the factors on the desired rates that a tied motion has, one a joint."""
-        if self.task.reduction.control != "per-joint":
+        if not self._tied:
             return np.zeros((self._rows, 0))
         moving = np.abs(desired.rate) > MOVING * np.max(np.abs(desired.rate), axis=0)
         return np.divide(modified.rate, desired.rate, out=np.ones_like(desired.rate), where=moving)
