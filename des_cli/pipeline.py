@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond, respond_as_asked
@@ -26,9 +26,41 @@ from des_cli.verify.claim import Claim
 from des_cli.verify.verify import verify
 
 
+@dataclass(frozen=True)
+class Prepared:
+    """The motions that a reduction begins with.
+
+    Profiles that differ in their ``reduction`` alone have the same: neither motion
+    depends on it.
+
+    Parameters
+    ----------
+    asked : DesiredMotion
+        What the profile asks for: the record.
+    target : Motion
+        What the reduction begins from: the same, or what conditioning made of it.
+    """
+
+    asked: DesiredMotion
+    target: Motion
+
+
+def prepare_profile(profile: Profile) -> Prepared:
+    """Make the desired motion of a profile.
+
+    Raises
+    ------
+    UsageError
+        If the profile asks for G of a machine whose arm does not turn about the vertical.
+    """
+    asked = find_desired(profile)
+    return Prepared(asked, _conditioned(profile, asked))
+
+
 def reduce_profile(
     profile: Profile,
     *,
+    prepared: Prepared | None = None,
     on_iteration: Callable[[Iteration], None] | None = None,
     on_stage: OnStage = untold,
 ) -> Run:
@@ -37,6 +69,8 @@ def reduce_profile(
     Parameters
     ----------
     profile : Profile
+    prepared : Prepared, optional
+        What `prepare_profile` makes of it, where that is at hand.
     on_iteration : callable, optional
         Called with each line of the solver's log.
     on_stage : callable, optional
@@ -54,9 +88,10 @@ def reduce_profile(
         If the reduction asks for things that exclude each other.
     """
     require_consistent(profile.reduction, profile.name)
-    on_stage("desired motion")
-    asked = find_desired(profile)
-    target = _conditioned(profile, asked)
+    if prepared is None:
+        on_stage("desired motion")
+        prepared = prepare_profile(profile)
+    asked, target = prepared.asked, prepared.target
     found = find_motion(profile, asked, target, on_iteration, on_stage)
     on_stage("baselines")
     found, led = _with_leads(profile, found)

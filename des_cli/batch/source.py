@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from des_cli.errors import Complaint, DesError, UsageError
 
@@ -51,15 +51,19 @@ def load_source(source: Source) -> Profile:
     """Load the profile of a source with its overrides."""
     from des_cli.profiles_in.load import load_profile
 
-    return load_profile(
-        source.name,
-        settings=source.settings,
-        columns=source.columns,
-        stdin=source.stdin,
-        part=source.part,
-        separator=source.separator,
-        decimal=source.decimal,
-    )
+    return load_profile(source.name, part=source.part, **_how(source))
+
+
+def load_source_variants(
+    source: Source, variants: Sequence[Sequence[str]]
+) -> list[Profile | DesError]:
+    """Load the profile of a source once, with several lists of further settings.
+
+    See ``profiles_in.variants.load_variants``.
+    """
+    from des_cli.profiles_in.variants import load_variants
+
+    return load_variants(source.name, variants, part=source.part, **_how(source))
 
 
 def split_source(source: Source) -> list[Source]:
@@ -70,19 +74,23 @@ def split_source(source: Source) -> list[Source]:
     from des_cli.profiles_in.load import count_parts
 
     try:
-        parts = count_parts(
-            source.name,
-            settings=source.settings,
-            columns=source.columns,
-            stdin=source.stdin,
-            separator=source.separator,
-            decimal=source.decimal,
-        )
+        parts = count_parts(source.name, **_how(source))
     except (DesError, OSError):
         parts = 1
     if parts == 1:
         return [source]
     return [replace(source, part=k + 1) for k in range(parts)]
+
+
+def _how(source: Source) -> dict[str, Any]:
+    """Return how a source is read."""
+    return {
+        "settings": source.settings,
+        "columns": source.columns,
+        "stdin": source.stdin,
+        "separator": source.separator,
+        "decimal": source.decimal,
+    }
 
 
 def require_distinct_names(sources: Iterable[Source]) -> None:

@@ -35,7 +35,7 @@ from des_cli.errors import Complaint, ExitCode, FileAccessError
 if TYPE_CHECKING:
     from des_cli.model.profile import Control, Profile
     from des_cli.model.tradeoff import TradePoint
-    from des_cli.tradeoff.jobs import PointJob, PointResult
+    from des_cli.tradeoff.jobs import PointPlan, PointResult
 
 
 @click.command(
@@ -140,21 +140,18 @@ def sweep(
         separator=separator,
         decimal=decimal,
     )
-    points = _plan(source, reduction, swept, r2s or (), controls)
-    return _run(console, points, jobs, out, form, plot, overwrite)
+    plans = _plan(reduction, swept, r2s or (), controls)
+    return _run(console, source, plans, jobs, out, form, plot, overwrite)
 
 
 def _plan(
-    source: Source,
     reduction: dict[str, Any],
     budgets: Budgets | None,
     r2s: tuple[float, ...],
     controls: Sequence[str],
-) -> list[PointJob]:
-    """Return a job for each point, over budgets or else over r2, and one for the baselines."""
-    from dataclasses import replace
-
-    from des_cli.tradeoff.jobs import PointJob
+) -> list[PointPlan]:
+    """Return what each point asks for, over budgets or else over r2, and the baselines."""
+    from des_cli.tradeoff.jobs import PointPlan
 
     swept, values = budgets or ("r2", r2s)
     base = reduction
@@ -162,25 +159,25 @@ def _plan(
         # what a budget buys is meant inside the limits, and so is what it is compared with
         base = reduction | {"limits": reduction["limits"] or "enforce"}
 
-    def read(own: Mapping[str, Any], *further: str) -> Source:
-        settings = (*source.settings, *reduction_settings({**base, **own}), *further)
-        return replace(source, settings=settings)
+    def settings(own: Mapping[str, Any], *further: str) -> tuple[str, ...]:
+        return (*reduction_settings({**base, **own}), *further)
 
-    jobs = []
+    plans = []
     for control in controls:
         for value in values:
             own: dict[str, Any] = {"method": "minimum", "algorithm": "optimum", "control": control}
             if budgets:  # r2 is the study's then
-                point = read(own | {"r2": None}, f"reduction.budget.{swept}={value!r}")
+                point = settings(own | {"r2": None}, f"reduction.budget.{swept}={value!r}")
             else:
-                point = read(own | {"r2": repr(value)})
-            jobs.append(PointJob(point, cast("Control", control), swept, value))
-    return [*jobs, PointJob(read({"budget": None}), weights=r2s)]
+                point = settings(own | {"r2": repr(value)})
+            plans.append(PointPlan(point, cast("Control", control), swept, value))
+    return [*plans, PointPlan(settings({"budget": None}), weights=r2s)]
 
 
 def _run(
     console: Console,
-    jobs: list[PointJob],
+    source: Source,
+    plans: list[PointPlan],
     workers: int,
     out: str | None,
     form: str,
@@ -189,15 +186,17 @@ def _run(
 ) -> ExitCode:
     from des_cli.batch.pool import local_executor
     from des_cli.batch.runner import run_tasks
-    from des_cli.tradeoff.jobs import PointResult, check_points, exit_code_of, run_point
+    from des_cli.tradeoff.jobs import PointResult, exit_code_of, load_points, make_jobs, run_point
 
     results = []
     with (
-        local_executor(min(workers, len(jobs)) if workers else workers) as executor,
-        console.working(len(jobs), "points") as line,
+        local_executor(min(workers, len(plans)) if workers else workers) as executor,
+        console.working(len(plans), "points") as line,
     ):
         line.stage("reading")
-        profile = check_points(jobs)
+        profiles = load_points(source, plans)
+        line.stage("desired motion")
+        jobs = make_jobs(source.name, plans, profiles)
         live = executor is None and console.verbosity >= VERBOSE
         for result in run_tasks(
             jobs,
@@ -215,7 +214,7 @@ def _run(
     from des_cli.tradeoff.curve import doubts
 
     console.warn(doubts(points))
-    about = f"{profile.name}, {_objective(profile)}"
+    about = f"{profiles[0].name}, {_objective(profiles[0])}"
     _write(points, about, out, form, overwrite)
     if plot is not None:
         from des_cli.runs_out.atomic import write_file

@@ -8,12 +8,12 @@ import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from des_cli.errors import Complaint, FileAccessError, ProfileError, UsageError
+from des_cli.errors import Complaint, ProfileError, UsageError
 from des_cli.model.profile import Profile
-from des_cli.profiles_in.builtin import builtin_profile, builtin_profiles
 from des_cli.profiles_in.findings import Findings, bounded
 from des_cli.profiles_in.gaps import GapHandling
 from des_cli.profiles_in.profile_csv import parse_samples
+from des_cli.profiles_in.profile_file import ProfileFile
 from des_cli.profiles_in.profile_yaml import (
     Commands,
     Reading,
@@ -22,13 +22,9 @@ from des_cli.profiles_in.profile_yaml import (
     parse_settings,
 )
 from des_cli.profiles_in.schema import ProfileSettings
-from des_cli.profiles_in.source import decode, decode_table, label_of, read_source
-from des_cli.profiles_in.wording import did_you_mean
+from des_cli.profiles_in.source import decode
 
-STDIN_LABEL = "<stdin>"
 _SPLIT = "split"
-
-_YAML_LINE = re.compile(r"""---|%YAML|[{\[]|["']?[\w. -]+["']?\s*:(\s|$)|- """)
 
 
 def load_profile(
@@ -74,7 +70,8 @@ def load_profile(
         If a file cannot be read.
     """
     gaps = GapHandling(part=part)
-    return _load(source, settings, dict(columns or {}), stdin, gaps, separator, decimal)
+    file = ProfileFile.read(source, stdin)
+    return parse_file(file, settings, dict(columns or {}), gaps, separator, decimal)
 
 
 def count_parts(
@@ -94,29 +91,29 @@ def count_parts(
         As of `load_profile`, whose errors this raises too, but only where there is
         something to split.
     """
-    path, label, data = _read(source, stdin)
+    file = ProfileFile.read(source, stdin)
     asked = any(_SPLIT in setting for setting in settings)
     # The word has to stand somewhere: a long table need not be read to know that.
-    if not asked and _SPLIT.encode() not in data:
+    if not asked and _SPLIT.encode() not in file.data:
         return 1
-    if not asked and not _is_yaml(path, decode_table(data, label)[0]):
+    if not asked and not file.is_yaml:
         return 1
     gaps = GapHandling(part=1)
-    _load(source, settings, dict(columns or {}), stdin, gaps, separator, decimal)
+    parse_file(file, settings, dict(columns or {}), gaps, separator, decimal)
     return gaps.parts
 
 
-def _load(
-    source: str | Path,
+def parse_file(
+    file: ProfileFile,
     settings: Sequence[str],
     columns: dict[str, str],
-    stdin: bytes | None,
     gaps: GapHandling,
     separator: str | None,
     decimal: str | None,
 ) -> Profile:
-    path, label, data = _read(source, stdin)
-    text, remarks = decode_table(data, label)
+    """Make a profile of its bytes; arguments and errors are those of `load_profile`."""
+    path, label, data = file.path, file.label, file.data
+    text, remarks = file.table
     folder = path.parent if path else Path()
     digest = hashlib.sha256(data)
     given = {"separator": separator, "decimal": decimal}
@@ -129,45 +126,12 @@ def _load(
     reading = Reading(label, folder, digest, gaps=gaps, remarks=[*remarks])
     name = _safe_name(path.stem if path else "stdin")
     try:
-        if _is_yaml(path, text):
+        if file.is_yaml:
             _refuse_table_options(label, columns, written)
             return parse_profile(decode(data, label), reading, name, settings)
         return _load_csv(text, reading, name, settings, columns, written)
     except ProfileError as error:
         raise ProfileError(bounded(error.complaints)) from None
-
-
-def _read(source: str | Path, stdin: bytes | None) -> tuple[Path | None, str, bytes]:
-    """Return the path (None for standard input), the label and the bytes."""
-    if source == "-":
-        if stdin is None:
-            raise FileAccessError([Complaint(STDIN_LABEL, "nothing was given on standard input")])
-        return None, STDIN_LABEL, stdin
-    path, label = Path(source), label_of(source)
-    try:
-        there = path.exists()
-    except (OSError, ValueError):
-        there = True  # reading it says what is the matter
-    if not there:
-        builtin = builtin_profile(str(source))
-        if builtin is None:
-            names = [profile.name for profile in builtin_profiles()]
-            hint = did_you_mean(str(source), names)
-            what = f"there is no such file, and no built-in profile of that name{hint}"
-            raise FileAccessError([Complaint(label, what)])
-        path, label = builtin.path, builtin.path.name
-    return path, label, read_source(path, label)
-
-
-def _is_yaml(path: Path | None, text: str) -> bool:
-    """Tell YAML from CSV by the file's ending, or by its first line that says anything."""
-    suffix = path.suffix.lower() if path else ""
-    if suffix in (".yaml", ".yml", ".csv"):
-        return suffix != ".csv"
-    for line in text.splitlines()[:1000]:
-        if line.strip() and not line.lstrip().startswith("#"):
-            return _YAML_LINE.match(line) is not None
-    return False
 
 
 def _refuse_table_options(

@@ -110,14 +110,27 @@ def parse_profile(text: str, reading: Reading, name: str, settings: Sequence[str
     FileAccessError
         If a file that it refers to cannot be read and nothing else is wrong.
     """
-    root = parse_yaml(text, reading.label)
+    document, findings = parse_document(text, reading.label, settings)
+    return finish(document, document_commands, reading, name, findings)
+
+
+def parse_document(
+    text: str, label: str, settings: Sequence[str]
+) -> tuple[ProfileDocument, Findings]:
+    """Read the sections of a YAML profile, before anything is made of them.
+
+    Returns
+    -------
+    ProfileDocument, Findings
+        What they say, and what is wrong with them.
+    """
+    root = parse_yaml(text, label)
     findings = Findings(root)
     if not isinstance(root.value, dict):
         findings.add((), "is not a profile: a profile is a mapping that starts with format:")
         findings.raise_if_any()
     findings.complaints += apply_settings(root, settings)
-    document = validated(ProfileDocument, findings)
-    return finish(document, document_commands, reading, name, findings)
+    return validated(ProfileDocument, findings), findings
 
 
 def parse_settings(settings: Sequence[str], label: str) -> tuple[ProfileSettings, Findings]:

@@ -16,8 +16,8 @@ from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
 from des_cli.model.tradeoff import BASELINE, SOLVED, TradePoint
+from des_cli.pipeline import Prepared, prepare_profile
 from des_cli.reduction.baseline import objective_reduction
-from des_cli.reduction.desired import find_desired
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.limits import find_violations
@@ -33,7 +33,9 @@ CONSTANT_FACTORS = (0.99, 0.98, 0.95, 0.9, 0.85, 0.8, 0.7)
 """Constant p of the baseline; its joint deviation is about 1 - p."""
 
 
-def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[TradePoint]:
+def baseline_points(
+    profile: Profile, weights: Sequence[float] = (), prepared: Prepared | None = None
+) -> list[TradePoint]:
     """Return the points of the study's sweep and of constant factors.
 
     Parameters
@@ -44,9 +46,10 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
         as in the study.
     weights : sequence of float
         r2 of the study's law. Without one, the profile's.
+    prepared : Prepared, optional
+        The desired motion, where that is made already.
     """
-    asked = find_desired(profile)
-    comparison = _Comparison.of(profile, asked)
+    comparison = _Comparison.of(profile, (prepared or prepare_profile(profile)).asked)
     problem = comparison.problem
     points = [
         _study_point(replace(comparison, problem=replace(problem, r2=np.array([r2]))), r2)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from des_cli.batch.source import Source, load_source
+from des_cli.batch.source import Source, load_source_variants
 from des_cli.errors import DesError, ExitCode, Failure
 from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import TradePoint
@@ -19,37 +19,55 @@ from des_cli.model.tradeoff import TradePoint
 if TYPE_CHECKING:
     from des_cli.model.profile import Control, Profile
     from des_cli.model.solution import Iteration
+    from des_cli.pipeline import Prepared
 
 
 @dataclass(frozen=True, slots=True)
-class PointJob:
-    """One optimum, or the baselines.
+class PointPlan:
+    """What one point of a curve asks for: an optimum, or the baselines.
 
     Parameters
     ----------
-    source : Source
-        The profile with its settings.
+    settings : tuple of str
+        Further ``--set`` strings for the profile's reduction.
     control, swept, value
-        What the settings ask for, to name the point by; empty for the baselines.
+        What these ask for, to name the point by; empty for the baselines.
     weights : tuple of float
         r2 of the study's law, for the baselines.
     """
 
-    source: Source
+    settings: tuple[str, ...]
     control: Control = "scalar"
     swept: str = ""
     value: float = 0.0
     weights: tuple[float, ...] = ()
 
     @property
-    def label(self) -> str:
-        """What a message about it begins with."""
-        return self.source.name
-
-    @property
     def baselines(self) -> bool:
-        """Whether this is the job of the baselines."""
+        """Whether this asks for the baselines."""
         return not self.swept
+
+
+@dataclass(frozen=True, slots=True)
+class PointJob:
+    """A point to be computed, with all that is needed for it.
+
+    Parameters
+    ----------
+    label : str
+        What a message about it begins with.
+    plan : PointPlan
+    profile : Profile
+        With the reduction of the point.
+    prepared : Prepared, optional
+        The desired motion, one for all points; None where it cannot be made: each
+        point then says why.
+    """
+
+    label: str
+    plan: PointPlan
+    profile: Profile
+    prepared: Prepared | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,21 +86,24 @@ class PointResult:
     @classmethod
     def failed(cls, job: PointJob, error: Exception) -> PointResult:
         """Make the result of a job that an exception ended."""
-        failure = Failure.of(error)
-        if job.baselines:
+        failure, plan = Failure.of(error), job.plan
+        if plan.baselines:
             return cls((), failure=failure)
         message = "; ".join(failure.lines)
-        point = TradePoint("optimum", job.control, job.swept, job.value, "failed", message=message)
+        point = TradePoint(
+            "optimum", plan.control, plan.swept, plan.value, "failed", message=message
+        )
         return cls((point,), failure=failure)
 
 
-def check_points(jobs: Sequence[PointJob]) -> Profile:
-    """Load each job's profile and refuse what the solver would refuse.
+def load_points(source: Source, plans: Sequence[PointPlan]) -> list[Profile]:
+    """Load a profile once, with the reduction of each plan, and refuse what cannot be solved.
 
-    Returns
-    -------
-    Profile
-        Of the last job.
+    Parameters
+    ----------
+    source : Source
+    plans : sequence of PointPlan
+        At least one.
 
     Raises
     ------
@@ -91,20 +112,49 @@ def check_points(jobs: Sequence[PointJob]) -> Profile:
     """
     from des_cli.reduction.consistency import require_consistent
 
-    profile: Profile | None = None
+    profiles: list[Profile] = []
     errors: list[DesError] = []
-    for each in jobs:
+    loaded = load_source_variants(source, [plan.settings for plan in plans])
+    for plan, profile in zip(plans, loaded, strict=True):
+        if isinstance(profile, DesError):
+            errors.append(profile)
+            continue
+        profiles.append(profile)
         try:
-            profile = load_source(each.source)
-            if not each.baselines:
+            if not plan.baselines:
                 require_consistent(profile.reduction)
         except DesError as error:
             errors.append(error)
     if errors:
         same = [p for error in errors if type(error) is type(errors[0]) for p in error.complaints]
         raise type(errors[0])(list(dict.fromkeys(same)))
-    assert profile is not None, "there is a job"
-    return profile
+    return profiles
+
+
+def make_jobs(
+    label: str, plans: Sequence[PointPlan], profiles: Sequence[Profile]
+) -> list[PointJob]:
+    """Return the jobs of a curve's points, for which the desired motion is made once.
+
+    Parameters
+    ----------
+    label : str
+        What messages begin with.
+    plans : sequence of PointPlan
+    profiles : sequence of Profile
+        For each plan, the same but for its reduction.
+    """
+    from des_cli.pipeline import prepare_profile
+
+    prepared: Prepared | None
+    try:
+        prepared = prepare_profile(profiles[0])
+    except Exception:  # each point meets it again, and says so
+        prepared = None
+    return [
+        PointJob(label, plan, profile, prepared)
+        for plan, profile in zip(plans, profiles, strict=True)
+    ]
 
 
 def run_point(
@@ -128,13 +178,13 @@ def run_point(
         from des_cli.tradeoff.baselines import baseline_points
         from des_cli.tradeoff.point import trade_point
 
-        profile = load_source(job.source)
-        if job.baselines:
+        plan, profile, prepared = job.plan, job.profile, job.prepared
+        if plan.baselines:
             on_stage("baselines")
-            return PointResult(tuple(baseline_points(profile, job.weights)))
-        point = trade_point(profile, note, on_stage)
-        # of several budgets, only the job knows which one is swept
-        return PointResult((replace(point, swept=job.swept, value=job.value),), tuple(log))
+            return PointResult(tuple(baseline_points(profile, plan.weights, prepared)))
+        point = trade_point(profile, prepared, note, on_stage)
+        # of several budgets, only the plan knows which one is swept
+        return PointResult((replace(point, swept=plan.swept, value=plan.value),), tuple(log))
     except Exception as error:
         return PointResult.failed(job, error)
 

@@ -15,7 +15,7 @@ from des_cli.model.run import Run
 from des_cli.model.solution import Iteration
 from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import SOLVED, TradePoint
-from des_cli.pipeline import reduce_profile
+from des_cli.pipeline import Prepared, reduce_profile
 
 PARTS = ("objective", "bb3", "vector", "seat_x", "seat_y", "seat_z")
 """Parts of the Coriolis vector whose reduction a point has."""
@@ -32,6 +32,7 @@ COSTS: tuple[MetricKey, ...] = (
 
 def trade_point(
     profile: Profile,
+    prepared: Prepared | None = None,
     on_iteration: Callable[[Iteration], None] | None = None,
     on_stage: OnStage = untold,
 ) -> TradePoint:
@@ -41,6 +42,8 @@ def trade_point(
     ----------
     profile : Profile
         With a budget, or a weight r2, which is what the point is named after.
+    prepared : Prepared, optional
+        Its desired motion, where that is made already.
     on_iteration : callable, optional
         Called with each line of the solver's log.
     on_stage : callable, optional
@@ -51,7 +54,7 @@ def trade_point(
     UsageError
         If the reduction asks for things that exclude each other.
     """
-    run = reduce_profile(profile, on_iteration=on_iteration, on_stage=on_stage)
+    run = reduce_profile(profile, prepared=prepared, on_iteration=on_iteration, on_stage=on_stage)
     reduction = profile.reduction
     swept, value = (
         (reduction.budget[0].metric, reduction.budget[0].most)

@@ -11,12 +11,14 @@ import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 
-from des_cli.batch.source import load_source
+from des_cli.batch.source import Source
 from des_cli.cli import sweep as module
+from des_cli.cli.console import Console
 from des_cli.errors import ExitCode
+from des_cli.model.profile import Profile
 from des_cli.runs_out.point_table import COLUMNS
 from des_cli.tradeoff.baselines import CONSTANT_FACTORS
-from des_cli.tradeoff.jobs import PointJob
+from des_cli.tradeoff.jobs import PointPlan, load_points
 from tests.support.points import curve, rows_of
 
 
@@ -95,25 +97,22 @@ def test_numpy_is_not_imported_before_the_number_of_threads_is_set(
     assert (done.returncode, done.stdout) == (0, "False\n"), done.stderr
 
 
-def budgets_of(job: PointJob) -> dict[str, float]:
-    return {b.metric: b.most for b in load_source(job.source).reduction.budget}
-
-
 def planned(invoke, monkeypatch: pytest.MonkeyPatch, *args: str) -> list[tuple]:
     """Control, swept value and budgets of every point that a sweep would compute."""
-    jobs: list[PointJob] = []
+    points: list[tuple[PointPlan, Profile]] = []
+
+    def load(_: Console, source: Source, plans: list[PointPlan], *rest: object) -> ExitCode:
+        points.extend(zip(plans, load_points(source, plans), strict=True))
+        return ExitCode.DONE
+
     with monkeypatch.context() as patch:
-        patch.setattr(module, "_run", lambda _, points, *rest: jobs.extend(points) or ExitCode.DONE)
+        patch.setattr(module, "_run", load)
         result = invoke("sweep", *args)
     assert result.exit_code == 0, result.stderr
     return [
-        (
-            job.control,
-            job.value,
-            {b.metric: b.most for b in load_source(job.source).reduction.budget},
-        )
-        for job in jobs
-        if not job.baselines
+        (plan.control, plan.value, {b.metric: b.most for b in profile.reduction.budget})
+        for plan, profile in points
+        if not plan.baselines
     ]
 
 

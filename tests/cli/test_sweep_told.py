@@ -10,7 +10,14 @@ from des_cli.cli.tradeoff_text import point_line, points_text
 from des_cli.errors import ExitCode, Failure
 from des_cli.model.tradeoff import TradePoint
 from des_cli.tradeoff.curve import doubts
-from des_cli.tradeoff.jobs import PointJob, PointResult, exit_code_of, run_point
+from des_cli.tradeoff.jobs import (
+    PointPlan,
+    PointResult,
+    exit_code_of,
+    load_points,
+    make_jobs,
+    run_point,
+)
 
 RATE, G = "seat_rate_deviation_relative", "seat_g_rms_error_g"
 
@@ -46,7 +53,8 @@ def test_a_point_is_named_after_what_is_swept(
     small: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("des_cli.tradeoff.point.trade_point", lambda *_: replace(POINT, swept=G))
-    job = PointJob(Source(str(tmp_path / small)), "scalar", RATE, 0.2)
+    plans = [PointPlan((), "scalar", RATE, 0.2)]
+    [job] = make_jobs(small, plans, load_points(Source(str(tmp_path / small)), plans))
     [point] = run_point(job).points
     assert (point.swept, point.value) == (RATE, 0.2)
 
