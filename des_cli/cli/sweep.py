@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import click
@@ -14,7 +12,6 @@ from des_cli.batch.source import STANDARD_STREAM, Source
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     TABLE_FORMATS,
-    read_budgets,
     reduction_options_without,
     reduction_settings,
     verbosity_options,
@@ -26,11 +23,15 @@ from des_cli.cli.sweep_options import (
     DEFAULT_CONTROLS,
     DEFAULT_METRIC,
     Budgets,
+    point_format,
     read_controls,
     read_swept_budgets,
     read_weights,
+    refuse_budgets,
+    refuse_existing,
+    refuse_weights,
 )
-from des_cli.errors import Complaint, ExitCode, FileAccessError
+from des_cli.errors import ExitCode
 
 if TYPE_CHECKING:
     from des_cli.model.profile import Control, Profile
@@ -125,12 +126,12 @@ def sweep(
     if budgets and r2s:
         raise click.UsageError("--budgets and --r2s exclude each other.")
     swept = None if r2s else budgets or (DEFAULT_METRIC, DEFAULT_BUDGETS)
-    _refuse_weights(reduction, r2s)
-    _refuse_budgets(reduction, swept)
-    form = _form(out, table_format)
+    refuse_weights(reduction, r2s)
+    refuse_budgets(reduction, swept)
+    form = point_format(out, table_format)
     if form != "text" and out in (None, STANDARD_STREAM):
         refuse_binary_on_terminal(form)
-    _refuse_existing(out, plot, overwrite)
+    refuse_existing(out, plot, overwrite)
     source = source_of(
         profile,
         settings,
@@ -267,48 +268,3 @@ def _objective(profile: Profile) -> str:
     plain = all(not r1[i][j] for i in range(3) for j in range(3) if i != j)
     weights = ", ".join(f"{r1[i][i]:g}" for i in range(3)) if plain else "a matrix"
     return f"r1 = {weights} in {profile.reduction.axes} axes"
-
-
-def _form(out: str | None, named: str | None) -> str:
-    """Return the format of the points, ``text`` where they are for a person."""
-    on_terminal = sys.stdout is not None and sys.stdout.isatty()
-    if out is None:
-        return named or ("text" if on_terminal else "csv")
-    suffix = "" if out == STANDARD_STREAM else Path(out).suffix.lower().removeprefix(".")
-    if named is not None and suffix in TABLE_FORMATS and suffix != named:
-        raise click.UsageError(f"--format {named} contradicts the suffix of {out}.")
-    return named or (suffix if suffix in TABLE_FORMATS else "csv")
-
-
-def _refuse_weights(reduction: dict[str, Any], r2s: tuple[float, ...] | None) -> None:
-    if r2s and reduction["r2"] is not None:
-        raise click.UsageError("--r2 and --r2s exclude each other.")
-    if not r2s and reduction["tracking"] is not None:
-        raise click.UsageError("--tracking needs --r2s: a budget brings its own weight.")
-
-
-def _refuse_budgets(reduction: dict[str, Any], swept: Budgets | None) -> None:
-    fixed = read_budgets(reduction["budget"])
-    if fixed and swept is None:
-        raise click.UsageError("--budget and --r2s exclude each other.")
-    if swept is not None and swept[0] in fixed:
-        raise click.UsageError(f"--budget keeps {swept[0]}, which is swept: leave one of them out.")
-
-
-def _refuse_existing(out: str | None, plot: str | None, overwrite: bool) -> None:
-    """Refuse before solving what would be refused when writing."""
-    if plot is not None and Path(plot).suffix.lower() != ".png":
-        raise click.UsageError(f"--plot draws a PNG: name it FILE.png, not {plot}.")
-    complaints = []
-    for name in (out, plot):
-        if name is None or name == STANDARD_STREAM:
-            continue
-        path = Path(name)
-        if path.is_dir():
-            complaints.append(Complaint(name, "is a folder; name a file"))
-        elif not path.parent.is_dir():
-            complaints.append(Complaint(name, "cannot be written: its folder does not exist"))
-        elif path.is_file() and not overwrite:
-            complaints.append(Complaint(name, "exists; --overwrite replaces it"))
-    if complaints:
-        raise FileAccessError(complaints)

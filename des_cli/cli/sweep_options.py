@@ -1,13 +1,17 @@
-"""The lists that ``sweep`` varies, as they stand on the command line."""
+"""What ``sweep`` varies and where it writes, as they stand on the command line."""
 
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+import sys
+from pathlib import Path
+from typing import Any, TypeAlias
 
 import click
 
-from des_cli.cli.options import without_percent
+from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.options import TABLE_FORMATS, read_budgets, without_percent
+from des_cli.errors import Complaint, FileAccessError
 
 DEFAULT_METRIC, DEFAULT_BUDGETS = "joint_deviation_relative", (0.01, 0.02, 0.05, 0.1)
 CONTROLS = ("free", "scalar", "per-joint")
@@ -69,3 +73,50 @@ def read_controls(context: click.Context, parameter: click.Parameter, text: str)
             f"{wrong[0]!r} is not {', '.join(CONTROLS[:-1])} or {CONTROLS[-1]}."
         )
     return controls
+
+
+def point_format(out: str | None, named: str | None) -> str:
+    """Return the format of the points, ``text`` where they are for a person."""
+    on_terminal = sys.stdout is not None and sys.stdout.isatty()
+    if out is None:
+        return named or ("text" if on_terminal else "csv")
+    suffix = "" if out == STANDARD_STREAM else Path(out).suffix.lower().removeprefix(".")
+    if named is not None and suffix in TABLE_FORMATS and suffix != named:
+        raise click.UsageError(f"--format {named} contradicts the suffix of {out}.")
+    return named or (suffix if suffix in TABLE_FORMATS else "csv")
+
+
+def refuse_weights(reduction: dict[str, Any], r2s: tuple[float, ...] | None) -> None:
+    """Refuse weights beside those that are swept, or beside budgets."""
+    if r2s and reduction["r2"] is not None:
+        raise click.UsageError("--r2 and --r2s exclude each other.")
+    if not r2s and reduction["tracking"] is not None:
+        raise click.UsageError("--tracking needs --r2s: a budget brings its own weight.")
+
+
+def refuse_budgets(reduction: dict[str, Any], swept: Budgets | None) -> None:
+    """Refuse a budget beside swept weights, or on the metric that is swept."""
+    fixed = read_budgets(reduction["budget"])
+    if fixed and swept is None:
+        raise click.UsageError("--budget and --r2s exclude each other.")
+    if swept is not None and swept[0] in fixed:
+        raise click.UsageError(f"--budget keeps {swept[0]}, which is swept: leave one of them out.")
+
+
+def refuse_existing(out: str | None, plot: str | None, overwrite: bool) -> None:
+    """Refuse before solving what would be refused when writing."""
+    if plot is not None and Path(plot).suffix.lower() != ".png":
+        raise click.UsageError(f"--plot draws a PNG: name it FILE.png, not {plot}.")
+    complaints = []
+    for name in (out, plot):
+        if name is None or name == STANDARD_STREAM:
+            continue
+        path = Path(name)
+        if path.is_dir():
+            complaints.append(Complaint(name, "is a folder; name a file"))
+        elif not path.parent.is_dir():
+            complaints.append(Complaint(name, "cannot be written: its folder does not exist"))
+        elif path.is_file() and not overwrite:
+            complaints.append(Complaint(name, "exists; --overwrite replaces it"))
+    if complaints:
+        raise FileAccessError(complaints)

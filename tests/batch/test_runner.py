@@ -119,14 +119,17 @@ def test_with_a_pool_what_had_begun_is_told_and_nothing_else_begins() -> None:
 
 
 def die(job: Job, *told: object) -> JobResult:
+    Path(job.label).touch()
     os._exit(9)
 
 
-def test_a_worker_that_dies_fails_its_task() -> None:
+def test_a_worker_that_dies_fails_its_task(tmp_path: Path) -> None:
+    begun = tmp_path / "begun"
     with local_executor(2) as executor:
-        [result] = run_tasks([Job(Source("cobra"))], die, JobResult.failed, executor)
+        [result] = run_tasks([Job(Source(str(begun)))], die, JobResult.failed, executor)
+    assert begun.exists()
     assert result.exit_code == ExitCode.FILE
-    assert result.complaints == (f"cobra: {runner.LOST}",)
+    assert result.complaints == (f"{begun}: {runner.LOST}",)
     assert "worker process died" in runner.LOST
 
 
