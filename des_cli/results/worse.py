@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from des_cli.model.machine import JOINTS
+from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION
 from des_cli.results.reading import lookup, number, section
 
 SHARE = 0.05
@@ -20,10 +21,6 @@ a twentieth is what two runs of one maneuver may differ by on a machine."""
 
 PEAK_SHARE = 0.1
 """The same of the total angular acceleration's peak: one instant says less than a mean."""
-
-LEAST_ANGULAR_ACCELERATION = 0.01
-"""Growth of it [rad/s^2] that is never told: about half a degree per second squared, at
-the threshold of the semicircular canals."""
 
 LEAST_GY = 0.1
 """Growth of the sideways G's peak [g] that is told: it leans a 1 g pilot by six degrees."""
@@ -120,7 +117,7 @@ def _angular(metrics: Mapping[str, Any]) -> list[Worse]:
         before, after = number(metrics, f"{_TOTAL}.{kind}_before_rad_s2"), number(metrics, path)
         if before is None or after is None:
             continue
-        if _grew(before, after, LEAST_ANGULAR_ACCELERATION, share):
+        if _grew(before, after, UNFELT_ANGULAR_ACCELERATION, share):
             numbers = f"{before:.3g} -> {after:.3g} rad/s²"
             texts.append(f"{numbers} rms" if kind == "rms" else f"peak {numbers}")
             paths.append(path)

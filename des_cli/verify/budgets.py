@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.metric import Budget
+from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION, Budget
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.verify.claim import Claim
@@ -153,7 +153,8 @@ def size(claim: Claim, metric: str) -> float:
     if not integral.relative:
         return claim.duration
     values = getattr(claim.before, integral.field)
-    return max(float(claim.weight @ np.sum(values**2, axis=0)), NOTHING)
+    least = NOTHING if integral.deviation else UNFELT_ANGULAR_ACCELERATION**2 * claim.duration
+    return max(float(claim.weight @ np.sum(values**2, axis=0)), least)
 
 
 def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
@@ -162,7 +163,7 @@ def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
         chord = np.sqrt(np.sum((felt.rotation - claim.before.rotation) ** 2, axis=(0, 1)) / 8.0)
         return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(chord, 1.0))))
     before, after = (np.sqrt(np.sum(each.turning**2, axis=0)) for each in (claim.before, felt))
-    return np.asarray(after / max(float(np.max(before)), NOTHING))
+    return np.asarray(after / max(float(np.max(before)), UNFELT_ANGULAR_ACCELERATION))
 
 
 def mean_square_one_minus_p(claim: Claim, control: Floats) -> float:

@@ -17,7 +17,7 @@ from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import SeatForms, SeatMotion, seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine, OccupantBounds, Seat
-from des_cli.model.metric import Budget, MetricKey
+from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION, Budget, MetricKey
 from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
@@ -340,7 +340,9 @@ class _Measures:
             case "seat_angular_acceleration_rms_error_rad_s2":
                 return self._term("acceleration", np.sqrt(mean) / most)
             case "seat_angular_acceleration_rms_ratio":
-                return Term("acceleration", self._per_size("acceleration") / most * np.eye(3))
+                least = UNFELT_ANGULAR_ACCELERATION * np.sqrt(self.grid.duration / weight)
+                scale = min(self._per_size("acceleration"), 1.0 / least)
+                return Term("acceleration", scale / most * np.eye(3))
         raise ValueError(f"a free motion has no budget on {budget.metric}")
 
     def _per_size(self, quantity: Quantity) -> float:
@@ -372,7 +374,7 @@ def _point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) -
     if budget.metric == "attitude_error_max_deg":
         return _attitude_bound(task, times, angle, budget.most)
     peak = np.max(np.linalg.norm(task.asked().seat_angular_acceleration, axis=-1))
-    return NormBound("acceleration", budget.most * max(float(peak), 1e-150))
+    return NormBound("acceleration", budget.most * max(float(peak), UNFELT_ANGULAR_ACCELERATION))
 
 
 def _attitude_bound(task: FreeTask, times: Floats, angle: Floats, most_deg: float) -> AttitudeBound:
