@@ -188,7 +188,8 @@ def resampled(
     """Return a record on a uniform grid from its first time on.
 
     Rates and positions by the shape-preserving cubic (PCHIP), an attitude by
-    the rotation spline. The grid ends with the last step inside the record.
+    the rotation spline, an asked G and what stands beside it by the straight lines
+    that its rows mean. The grid ends with the last step inside the record.
 
     Parameters
     ----------
@@ -208,7 +209,9 @@ def resampled(
     grid = _uniform(t, conditioning.step, label)
     others = [stem for stem in record if stem not in ("t", *QUATERNION)]
     found = {"t": grid}
-    if others:
+    if set(G_STEMS) & set(record):
+        found |= {stem: np.interp(grid, t, record[stem]) for stem in others}
+    elif others:
         from scipy.interpolate import PchipInterpolator
 
         # Times from the first one: late starts must not cost digits.

@@ -153,6 +153,17 @@ def test_what_is_wrong_with_columns(header: str, words: str) -> None:
     assert any(words in problem for problem in problems), problems
 
 
+def test_resampled_rows_of_g_stay_joined_by_straight_lines() -> None:
+    table = "t_s,gz_g,p_deg_s\n0,1.3,0\n10,4,10\n20,1.3,0\n"
+    profile = load(table, "resample={step_s: 0.05}")
+    command = command_of(profile)
+    slope = (command.end - command.start)[:, 2] / np.diff(profile.t)
+    np.testing.assert_allclose(np.abs(slope), 0.27, atol=1e-9)
+    assert command.rates is not None
+    expected = np.radians(np.interp(profile.t, [0, 10, 20], [0, 10, 0]))
+    np.testing.assert_allclose(command.rates.start[:, 0], expected[:-1], atol=1e-12)
+
+
 def test_a_recorded_g_is_trimmed_resampled_and_smoothed() -> None:
     t = np.arange(0.0, 10.001, 0.05)
     gz = 2.0 + 0.3 * np.sin(0.5 * t)
