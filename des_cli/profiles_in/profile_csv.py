@@ -110,7 +110,7 @@ def parse_samples(
         return flown_attitude(by_stem, remarks)
     t = by_stem["t"]
     if any(stem in by_stem for stem in G_STEMS):
-        return sampled_g(t, by_stem)
+        return sampled_g(t, by_stem, conditioning.washout)
     if "arm" in by_stem:
         arm = next(column for column in chosen if column.stem == "arm")
         return t, joint_commands_of_samples(

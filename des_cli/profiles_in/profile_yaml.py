@@ -19,6 +19,7 @@ from des_cli.profiles_in.commands import check_commands, read_commands, read_tim
 from des_cli.profiles_in.conditioning import (
     Conditioning,
     check_smoothing,
+    check_washout,
     read_conditioning,
     refuse_beside_expressions,
 )
@@ -173,6 +174,7 @@ def finish(
         unread = error if unread is None else ProfileError([*unread.complaints, *error.complaints])
     if commands is not None:
         check_smoothing(reading.conditioning, commands[0], findings)
+        check_washout(document.samples, commands[1], findings)
     reduction = read_reduction(document.reduction, findings)
     initial = read_initial(document.initial, commands, findings)
     if unread is not None and findings.complaints:

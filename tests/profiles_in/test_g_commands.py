@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -151,6 +153,20 @@ def test_what_is_wrong_with_columns(header: str, words: str) -> None:
     row = ",".join(["1"] * len(header.split(",")))
     problems = problems_of(f"{header}\n{row}\n")
     assert any(words in problem for problem in problems), problems
+
+
+def test_the_washout_of_recorded_rates_is_set_below_samples(tmp_path: Path) -> None:
+    table = "t_s,gz_g,p_deg_s\n0,1.4,0\n1,3,10\n2,3,10\n"
+    assert command_of(load(table)).washout == 2.0
+    assert command_of(load(table, "samples.washout_ms=500")).washout == 0.5
+    (tmp_path / "log.csv").write_text(table)
+    path = tmp_path / "log.yaml"
+    path.write_text("format: des-coriolis/1\nsamples: {file: log.csv, washout_s: 0.7}\n")
+    assert command_of(load_profile(path)).washout == 0.7
+    with pytest.raises(ProfileError, match="washout_s: washes out nothing: the samples are no G"):
+        load("t_s,gz_g\n0,1.4\n1,3\n", "samples.washout_s=1")
+    with pytest.raises(ProfileError, match="such as washout_s, is below samples"):
+        load(table, "g.washout_s=0.5")
 
 
 def test_resampled_rows_of_g_stay_joined_by_straight_lines() -> None:
