@@ -16,7 +16,7 @@ from des_cli.profiles_in.columns import choose_columns
 from des_cli.profiles_in.conditioning import Conditioning, in_seat_axes, resampled, rows_inside
 from des_cli.profiles_in.csv_header import Header, comment_lines, split_header
 from des_cli.profiles_in.csv_table import Rows, read_columns
-from des_cli.profiles_in.g_commands import sampled_g
+from des_cli.profiles_in.g_commands import STEP, sampled_g
 from des_cli.profiles_in.g_schema import G_STEMS
 from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
 from des_cli.profiles_in.interpolant import body_rates_of_samples
@@ -89,7 +89,9 @@ def parse_samples(
 
     by_stem = {stem: column[rows] for stem, column in by_stem.items()}
     by_stem = with_quaternions(by_stem, conditioning.euler, header, line, complaints)
-    complaints += find_short_steps(by_stem["t"], label, line)
+    by_lines = any(stem in by_stem for stem in G_STEMS)
+    drawn_every = STEP if by_lines else np.inf
+    complaints += find_short_steps(by_stem["t"], label, line, drawn_every=drawn_every)
     said = []
     for column in chosen:
         if column.stem in JOINTS and column.unit and column.unit.quantity == "angle":
@@ -102,14 +104,15 @@ def parse_samples(
         kept = rows_with_attitude(by_stem, label, remarks)
         by_stem = {stem: column[kept] for stem, column in by_stem.items()}
         rows = rows[kept]
-    stretch = select_rows(by_stem["t"], label, line, gaps or GapHandling(), said)
+    gaps = gaps or GapHandling()
+    stretch = select_rows(by_stem["t"], label, line, gaps, said, straight=by_lines)
     remarks += said
     by_stem = {stem: column[stretch] for stem, column in by_stem.items()}
     by_stem = resampled(by_stem, conditioning, label, remarks)
     if flies_attitude:
         return flown_attitude(by_stem, remarks)
     t = by_stem["t"]
-    if any(stem in by_stem for stem in G_STEMS):
+    if by_lines:
         return sampled_g(t, by_stem, conditioning.washout)
     if "arm" in by_stem:
         arm = next(column for column in chosen if column.stem == "arm")
