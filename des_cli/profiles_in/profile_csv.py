@@ -21,8 +21,8 @@ from des_cli.profiles_in.g_schema import G_STEMS
 from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
 from des_cli.profiles_in.interpolant import body_rates_of_samples
 from des_cli.profiles_in.positions import joint_commands_of_samples
-from des_cli.profiles_in.sample_times import SampleTimes, sample_times
-from des_cli.profiles_in.sampling import MAX_MAGNITUDE
+from des_cli.profiles_in.record_checks import check_magnitudes, check_times, tell_doubtful_units
+from des_cli.profiles_in.sample_times import sample_times
 from des_cli.profiles_in.wording import plain
 
 
@@ -144,8 +144,9 @@ def _read(
     times = sample_times(header, time, recorded, rows, complaints, remarks)
     if times is not None:
         by_stem["t"] = times.t
-        _check_times(header, time, times, rows, complaints)
-    _check_magnitudes(header, chosen, by_stem, rows, complaints)
+        check_times(header, time, times, rows, complaints)
+    check_magnitudes(header, chosen, by_stem, rows, complaints)
+    tell_doubtful_units(chosen, by_stem, remarks)
     return rows, by_stem
 
 
@@ -182,42 +183,3 @@ def _unwrapped(
             "the angle wraps there, and full turns were added so that it goes on"
         )
     return found.angle
-
-
-def _check_times(
-    header: Header, column: Column, times: SampleTimes, rows: Rows, complaints: list[Complaint]
-) -> None:
-    if len(times.t) < 2:
-        what = "has one row; a motion needs two or more"
-        complaints.append(Complaint(header.label, what))
-        return
-    late = np.flatnonzero(~(np.diff(times.t) > 0))
-    name = plain(column.in_file)
-    for index in late[:20].tolist():
-        complaints.append(
-            Complaint(
-                f"{header.label}:{rows.lines[index + 1]}",
-                f"{name}: {times.written(index + 1)} does not increase "
-                f"(previous {times.written(index)})",
-            )
-        )
-    if len(late) > 20:
-        complaints.append(Complaint(header.label, f"… and {len(late) - 20} more times like these"))
-
-
-def _check_magnitudes(
-    header: Header,
-    chosen: list[Column],
-    by_stem: Mapping[str, Floats],
-    rows: Rows,
-    complaints: list[Complaint],
-) -> None:
-    """Say where a command is beyond any machine."""
-    for column in chosen:
-        if column.stem == "t" or column.unit is None:
-            continue
-        wrong = np.flatnonzero(np.abs(by_stem[column.stem]) > MAX_MAGNITUDE)
-        if len(wrong):
-            place = f"{header.label}:{rows.lines[int(wrong[0])]}"
-            what = f"is beyond {MAX_MAGNITUDE:g} rad or rad/s ({len(wrong)} such cells)"
-            complaints.append(Complaint(place, f"{plain(column.in_file)}: {what}"))

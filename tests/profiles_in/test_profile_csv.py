@@ -57,6 +57,21 @@ def test_body_rates_are_read_with_the_recorded_attitude() -> None:
     assert np.isnan(command.attitude[2]).all()
 
 
+def test_degrees_under_the_name_of_radians_are_asked_about_and_not_changed() -> None:
+    rows = "".join(f"{k},0,{60 + k},-40\n" for k in range(5))
+    remarks: list[str] = []
+    _, command = parse_samples(RATES + rows, "x.csv", {}, remarks=remarks)
+    assert isinstance(command, BodyRates)
+    assert command.end[-1].tolist() == [0, 64, -40]
+    assert remarks == [
+        "q_rad_s reaches 64 rad/s; is it in deg/s? --column q_deg_s=q_rad_s reads it so"
+    ]
+    # One wild row is no unit, and neither is a name in degrees.
+    for text in (RATES + "0,0,1,1\n1,0,99,1\n2,0,1,1\n", RATES.replace("rad", "deg") + rows):
+        parse_samples(text, "x.csv", {}, remarks=(said := []))
+        assert said == []
+
+
 def test_an_incomplete_attitude_is_left_out() -> None:
     _, command = parse_samples(RATES.replace("\n", ",q0,quality\n") + "0,1,2,3,1,5\n1,1,2,3,1,5\n",
                                "x.csv", {})  # fmt: skip
