@@ -9,7 +9,7 @@ import numpy as np
 from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, GCommand, JointCommands
-from des_cli.profiles_in.angles import unwrap
+from des_cli.profiles_in.angles import sudden_steps, unwrap
 from des_cli.profiles_in.attitude import flown_attitude, rows_with_attitude, with_quaternions
 from des_cli.profiles_in.column_kinds import EULER, JOINTS, QUATERNION, RATES, Column
 from des_cli.profiles_in.columns import choose_columns
@@ -24,6 +24,9 @@ from des_cli.profiles_in.positions import joint_commands_of_samples
 from des_cli.profiles_in.record_checks import check_magnitudes, check_times, tell_doubtful_units
 from des_cli.profiles_in.sample_times import sample_times
 from des_cli.profiles_in.wording import plain
+
+_TOLD = 20
+"""Jumps described."""
 
 
 def parse_samples(
@@ -181,5 +184,11 @@ def _unwrapped(
         remarks.append(
             f"line {line(row + 1)}: {name} jumps {jump(row)}{others}; "
             "the angle wraps there, and full turns were added so that it goes on"
+        )
+    for row in [] if found.unclear else sudden_steps(by_stem["t"], found.angle)[:_TOLD]:
+        time = f"t = {by_stem['t'][row + 1]:.12g} s"
+        remarks.append(
+            f"line {line(row + 1)}: {name} jumps {jump(row)} at {time}, which no joint follows: "
+            "mend the record, or --trim it to one side"
         )
     return found.angle

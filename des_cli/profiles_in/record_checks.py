@@ -13,7 +13,7 @@ from des_cli.profiles_in.csv_header import Header
 from des_cli.profiles_in.csv_table import Rows
 from des_cli.profiles_in.sample_times import SampleTimes
 from des_cli.profiles_in.sampling import MAX_MAGNITUDE
-from des_cli.profiles_in.wording import plain
+from des_cli.profiles_in.wording import option, plain
 
 FASTEST = 20.0
 """Rate [rad/s] above which no aircraft turns and no centrifuge: three turns a second. A
@@ -89,5 +89,5 @@ def tell_doubtful_units(
     name = plain(column.in_file)
     remarks.append(
         f"{name} reaches {max(peaks):.3g} rad/s; is it in deg/s? "
-        f"--column {column.stem}_deg_s={name} reads it so"
+        f"{option('--column', f'{column.stem}_deg_s={column.in_file}')} reads it so"
     )
