@@ -75,7 +75,7 @@ class Change:
             return ""
         shares = {metric: self.deviation.value(metric) for metric in SHARES}
         recorded = SHARES if self._asks_for_g else SHARES[:1]
-        allowed = {metric: _allowed(reduction, metric) for metric in recorded}
+        allowed = {metric: allowed_change(reduction, metric) for metric in recorded}
         if all(shares[metric] <= allowed[metric] for metric in recorded):
             return ""
         told = " and ".join(
@@ -123,7 +123,7 @@ class Change:
         return float(np.hypot(change, budget.most))
 
 
-def _allowed(reduction: Reduction, metric: MetricKey) -> float:
+def allowed_change(reduction: Reduction, metric: MetricKey) -> float:
     """Return what may be changed; who has a budget of more allows more."""
     if reduction.allow_change is not None:
         return reduction.allow_change
