@@ -18,6 +18,7 @@ from des_cli.model.stage import OnStage, untold
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.consistency import require_consistent
 from des_cli.reduction.desired import find_desired
+from des_cli.reduction.g_profile import require_makeable
 from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion
@@ -53,7 +54,10 @@ def reduce_profile(
     ------
     UsageError
         If the reduction asks for things that exclude each other.
+    NotReleasedError
+        If the profile asks for a G that the machine cannot make at all.
     """
+    require_makeable(profile)
     require_consistent(profile.reduction, profile.name)
     on_stage("desired motion")
     asked = find_desired(profile)

@@ -92,7 +92,7 @@ class Change:
         if self.nothing:
             return ""
         shares = {metric: self.deviation.value(metric) for metric in SHARES}
-        allowed = {metric: _allowed(reduction, metric) for metric in self._recorded}
+        allowed = {metric: allowed_change(reduction, metric) for metric in self._recorded}
         if all(shares[metric] <= most for metric, most in allowed.items()):
             return ""
         told = " and ".join(
@@ -156,7 +156,7 @@ class Change:
         return float(rest * abs(rest)) if budget.metric == SQUARED else float(rest)
 
 
-def _allowed(reduction: Reduction, metric: MetricKey) -> float:
+def allowed_change(reduction: Reduction, metric: MetricKey) -> float:
     """Return what may be changed; who has a budget of more allows more."""
     if reduction.allow_change is not None:
         return reduction.allow_change
