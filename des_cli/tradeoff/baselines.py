@@ -99,7 +99,7 @@ class _Comparison:
             limits="warn",
             budget=(),
         )
-        problem = pose_problem(replace(profile, reduction=study), desired, asked)
+        problem = pose_problem(replace(profile, reduction=study), desired, asked.record)
         before = respond_as_asked(profile.machine, profile.seat, asked)
         return cls(profile, asked, before, problem)
 
