@@ -123,3 +123,10 @@ def test_a_bound_on_the_angular_acceleration_costs_a_percent() -> None:
     for bounded, free in pairs:
         cost = shares(metrics(*ROWS[free]))[0] - shares(metrics(*ROWS[bounded]))[0]
         assert 0.0 < cost < 1.2  # percent points
+
+
+def test_the_line_that_checks_everything_is_the_one_that_the_gate_runs() -> None:
+    said = re.search(r"All checks, from a clean clone:\n\n```sh\n(.+)\n```", TEXT)
+    gate = (Path(__file__).parents[1] / ".ci" / "run").read_text(encoding="utf-8")
+    assert said is not None
+    assert said[1] == gate.splitlines()[-1]
