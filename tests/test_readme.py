@@ -11,6 +11,8 @@ import pytest
 
 from des_cli import load_profile, reduce_profile
 
+pytestmark = pytest.mark.slow
+
 TEXT = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 WORDS = " ".join(TEXT.split())
 
