@@ -8,8 +8,9 @@ from typing import TypeAlias
 import click
 
 from des_cli.cli.options import without_percent
+from des_cli.model.metric import STUDY_METRIC
 
-DEFAULT_METRIC, DEFAULT_BUDGETS = "joint_deviation_relative", (0.01, 0.02, 0.05, 0.1)
+DEFAULT_METRIC, DEFAULT_BUDGETS = STUDY_METRIC, (0.01, 0.02, 0.05, 0.1)
 CONTROLS = ("free", "scalar", "per-joint")
 DEFAULT_CONTROLS = ("scalar", "per-joint")
 

@@ -6,6 +6,13 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from des_cli.cli.summary_rows import change, number, percent
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
+    JOINT_DEVIATION,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+)
 from des_cli.model.tradeoff import TradePoint
 
 # Columns: head, field, how a value is written.
@@ -16,13 +23,13 @@ _COLUMNS = (
     ("seat x", "seat_x_reduction", percent),
     ("seat y", "seat_y_reduction", percent),
     ("seat z", "seat_z_reduction", percent),
-    ("joints", "joint_deviation_relative", percent),
-    ("rate", "seat_rate_deviation_relative", percent),
-    ("G rms [g]", "seat_g_rms_error_g", number),
-    ("α error", "seat_angular_acceleration_rms_error_rad_s2", number),
+    ("joints", JOINT_DEVIATION, percent),
+    ("rate", SEAT_RATE_DEVIATION, percent),
+    ("G rms [g]", SEAT_G_ERROR, number),
+    ("α error", ANGULAR_ACCELERATION_ERROR, number),
     ("α rms", "seat_angular_acceleration_rms_rad_s2", number),
     ("α peak", "seat_angular_acceleration_peak_rad_s2", number),
-    ("turn [deg]", "attitude_error_max_deg", number),
+    ("turn [deg]", ATTITUDE_ERROR, number),
 )
 _WIDTH = 11
 _TITLES = {
@@ -58,7 +65,7 @@ def point_line(point: TradePoint) -> str:
     turning = number(point.seat_angular_acceleration_rms_rad_s2)
     gained = (
         f"{change(point.objective_reduction)} at joints {_joints(point)}, "
-        f"seat rate {percent(point.seat_rate_deviation_relative)}, α {turning} rad/s² rms"
+        f"seat rate {percent(point.fidelity(SEAT_RATE_DEVIATION))}, α {turning} rad/s² rms"
     )
     why = f" ({point.message})" if point.status == "unverified" else ""
     return f"{name}: {point.status} in {steps}, {gained}{why}"
@@ -75,7 +82,7 @@ def _before(points: Sequence[TradePoint]) -> str:
 
 
 def _joints(point: TradePoint) -> str:
-    return percent(point.joint_deviation_relative)
+    return percent(point.fidelity(JOINT_DEVIATION))
 
 
 def _title(point: TradePoint) -> str:
@@ -100,4 +107,4 @@ def _curve(title: str, points: Sequence[TradePoint]) -> Iterator[str]:
 
 def _head(swept: str) -> str:
     """Call the usual budget by a short name; any other by its own."""
-    return "budget" if swept == "joint_deviation_relative" else swept
+    return "budget" if swept == JOINT_DEVIATION else swept

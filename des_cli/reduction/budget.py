@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from des_cli.model.metric import METRICS, Budget
+from des_cli.model.metric import ANGULAR_ACCELERATION_PEAK_RATIO, ATTITUDE_ERROR, METRICS, Budget
 from des_cli.model.solution import Solution
 from des_cli.reduction.attitude_rows import AttitudeRows
 from des_cli.reduction.coarse import grids, refine
@@ -84,10 +84,10 @@ def _with_budgets(problem: Problem, budgets: Sequence[Budget]) -> Transcription:
     grid = Transcription(problem)
     for budget in budgets:
         most = budget.most * (1.0 - ROOM)
-        if budget.metric == "attitude_error_max_deg":
+        if budget.metric == ATTITUDE_ERROR:
             asked = problem.reference.angle, problem.shortfall
             grid.rows.append(AttitudeRows(problem.chain, *asked, most))
-        elif budget.metric == "seat_angular_acceleration_peak_ratio":
+        elif budget.metric == ANGULAR_ACCELERATION_PEAK_RATIO:
             grid.rows.append(SeatAccelerationRows(grid, most))
         else:
             grid.budgets.append(measure_of(grid, budget.metric, most))
@@ -110,9 +110,9 @@ def _spent(grid: Transcription, budgets: Sequence[Budget], best: Outcome) -> str
     bounds = {type(rows): rows for rows in grid.rows}
     shares = []
     for budget in budgets:
-        if budget.metric == "attitude_error_max_deg":
+        if budget.metric == ATTITUDE_ERROR:
             square = float(np.max(bounds[AttitudeRows].value(best.x)))
-        elif budget.metric == "seat_angular_acceleration_peak_ratio":
+        elif budget.metric == ANGULAR_ACCELERATION_PEAK_RATIO:
             square = float(np.max(bounds[SeatAccelerationRows].value(best.x)))
         else:
             square = next(measures).value(best.x)

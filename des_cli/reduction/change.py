@@ -14,7 +14,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from des_cli.kinematics.chain import Chain
-from des_cli.model.metric import METRICS, Budget, MetricKey
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_PEAK_RATIO,
+    ANGULAR_ACCELERATION_RMS_RATIO,
+    FACTOR_DEVIATION,
+    JOINT_DEVIATION_SQUARED,
+    METRICS,
+    SEAT_G_DEVIATION,
+    SEAT_RATE_DEVIATION,
+    Budget,
+    MetricKey,
+)
 from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.profile import Reduction
 from des_cli.reduction.fidelity import Deviation
@@ -23,11 +33,11 @@ LARGEST_CHANGE = 0.1
 """Share of the record's seat rate, or of an asked G, that may be changed before the
 reduction without a word of the user: what a silent profile may lose of the seat rate in all."""
 
-SHARES: tuple[MetricKey, ...] = ("seat_rate_deviation_relative", "seat_g_deviation_relative")
+SHARES: tuple[MetricKey, ...] = (SEAT_RATE_DEVIATION, SEAT_G_DEVIATION)
 """What of a change is told and bounded: what the pilot feels of it, relative to the record."""
 
 RATIOS: frozenset[MetricKey] = frozenset(
-    {"seat_angular_acceleration_rms_ratio", "seat_angular_acceleration_peak_ratio"}
+    {ANGULAR_ACCELERATION_RMS_RATIO, ANGULAR_ACCELERATION_PEAK_RATIO}
 )
 """Metrics that compare sizes: their value is one where nothing is changed."""
 
@@ -116,9 +126,9 @@ class Change:
         change = max(self.deviation.value(budget.metric), between)
         if budget.metric in RATIOS:
             return budget.most * change
-        if budget.metric == "mean_square_one_minus_p":
+        if budget.metric == FACTOR_DEVIATION:
             return budget.most
-        if budget.metric == "joint_deviation_relative_squared":
+        if budget.metric == JOINT_DEVIATION_SQUARED:
             return budget.most + change
         return float(np.hypot(change, budget.most))
 

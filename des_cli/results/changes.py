@@ -8,6 +8,12 @@ import numpy as np
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.machine import JOINTS
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+)
 from des_cli.model.motion import DesiredMotion, Motion, Shortfall, integrate_sides
 from des_cli.model.profile import Profile
 from des_cli.reduction.baseline import joint_deviation
@@ -83,10 +89,10 @@ def _cost(
         **{
             metric: deviation.value(metric)
             for metric in (
-                "seat_rate_deviation_relative",
-                "seat_g_rms_error_g",
-                "seat_angular_acceleration_rms_error_rad_s2",
-                "attitude_error_max_deg",
+                SEAT_RATE_DEVIATION,
+                SEAT_G_ERROR,
+                ANGULAR_ACCELERATION_ERROR,
+                ATTITUDE_ERROR,
             )
         },
     }

@@ -10,7 +10,7 @@ import numpy as np
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Seat
-from des_cli.model.metric import METRICS
+from des_cli.model.metric import JOINT_DEVIATION, METRICS
 from des_cli.model.motion import DesiredMotion, Motion, integrate_sides
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
@@ -62,11 +62,11 @@ def measure(run: Measured) -> dict[str, Any]:
         "baseline": {
             "report_sweep": {
                 "reduction": run.baselines.sweep_reduction,
-                "joint_deviation_relative": run.baselines.sweep_deviation,
+                JOINT_DEVIATION: run.baselines.sweep_deviation,
             },
             "constant_p": {
                 "p": run.baselines.constant_p,
-                "joint_deviation_relative": run.baselines.constant_deviation,
+                JOINT_DEVIATION: run.baselines.constant_deviation,
             },
         },
         "limits": {

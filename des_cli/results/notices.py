@@ -8,7 +8,16 @@ import numpy as np
 
 from des_cli.kinematics.noise import suggest_smoothing
 from des_cli.model.coriolis import COMPONENTS
-from des_cli.model.metric import METRICS, MetricKey
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_DEVIATION,
+    ANGULAR_ACCELERATION_ERROR,
+    FACTOR_DEVIATION,
+    JOINT_DEVIATION,
+    METRICS,
+    SEAT_G_DEVIATION,
+    SEAT_RATE_DEVIATION,
+    MetricKey,
+)
 from des_cli.model.motion import DesiredMotion
 from des_cli.model.profile import Profile
 from des_cli.results.asked_g import asked_g_sentence
@@ -22,10 +31,10 @@ FELT = 0.25
 
 RESTRAINING = frozenset(
     {
-        "mean_square_one_minus_p",
-        "seat_rate_deviation_relative",
-        "seat_angular_acceleration_deviation_relative",
-        "seat_angular_acceleration_rms_error_rad_s2",
+        FACTOR_DEVIATION,
+        SEAT_RATE_DEVIATION,
+        ANGULAR_ACCELERATION_DEVIATION,
+        ANGULAR_ACCELERATION_ERROR,
     }
 )
 """Metrics whose budget holds back rates or accelerations. Without one of them nothing in
@@ -144,7 +153,7 @@ def _felt(metrics: dict[str, Any]) -> str:
     """Say that a small change of angles is not a small change of what is felt."""
     fidelity = metrics["fidelity"]
     budget = metrics["solver"].get("budget") or {}
-    measures: tuple[MetricKey, ...] = ("seat_rate_deviation_relative", "seat_g_deviation_relative")
+    measures: tuple[MetricKey, ...] = (SEAT_RATE_DEVIATION, SEAT_G_DEVIATION)
     others = {key: fidelity[key] for key in measures if key not in budget}
     off = {key: value for key, value in others.items() if value is not None and value >= FELT}
     if not _usable(metrics) or not off:
@@ -152,7 +161,7 @@ def _felt(metrics: dict[str, Any]) -> str:
     said = ", ".join(
         f"{METRICS[key].label} is off by {100 * value:.0f} %" for key, value in off.items()
     )
-    joints = 100 * fidelity["joint_deviation_relative"]
+    joints = 100 * fidelity[JOINT_DEVIATION]
     return (
         f"what the pilot feels is changed: {said}, at {joints:.1f} % in the joints; "
         f"a budget on {' or '.join(off)} bounds that"
@@ -179,7 +188,7 @@ def _ill_posed(metrics: dict[str, Any]) -> str:
     )
     return (
         f"a budget on {labels} alone is ill-posed: {how}; "
-        "add a budget on seat_rate_deviation_relative, or objective: blend"
+        f"add a budget on {SEAT_RATE_DEVIATION}, or objective: blend"
     )
 
 

@@ -15,6 +15,13 @@ import numpy as np
 
 from des_cli.kinematics.response import respond, respond_as_asked
 from des_cli.model.arrays import Floats
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
+    JOINT_DEVIATION,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+)
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Run
@@ -240,11 +247,11 @@ def _measures(metrics: Mapping[str, Any]) -> dict[str, Any]:
     """Return the numbers of a point from the metrics of a run."""
     parts = ("objective", "bb3", "vector", "seat_x", "seat_y", "seat_z")
     costs = (
-        "joint_deviation_relative",
-        "seat_rate_deviation_relative",
-        "seat_g_rms_error_g",
-        "seat_angular_acceleration_rms_error_rad_s2",
-        "attitude_error_max_deg",
+        JOINT_DEVIATION,
+        SEAT_RATE_DEVIATION,
+        SEAT_G_ERROR,
+        ANGULAR_ACCELERATION_ERROR,
+        ATTITUDE_ERROR,
     )
     turning = metrics["felt"]["seat_angular_acceleration"]["magnitude"]
     return {
