@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import click
 
 from des_cli.cli.console import Console
-from des_cli.model.metric import METRICS, STUDY_METRIC
+from des_cli.model.metric import STUDY_METRIC, metric_named
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -234,9 +234,9 @@ def without_percent(metric: str, most: str) -> str:
     """
     if not most.endswith("%"):
         return most
-    unit = next((each.unit for each in METRICS.values() if each.key == metric), "")
-    if unit:
-        raise click.UsageError(f"{metric} is no share: give it in {unit}, not as {most!r}.")
+    known = metric_named(metric)
+    if known is not None and not known.relative:
+        raise click.UsageError(f"{metric} is no share: give it in {known.unit}, not as {most!r}.")
     try:
         return repr(float(most.removesuffix("%")) / 100.0)
     except ValueError:

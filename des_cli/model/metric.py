@@ -83,6 +83,21 @@ STUDY_METRIC: Final = JOINT_DEVIATION
 """What a budget without a name is on: the study's measure."""
 
 
+def metric_named(key: str) -> Metric | None:
+    """Return the metric with a key, or None.
+
+    >>> metric_named("attitude"), metric_named(ATTITUDE_ERROR).unit
+    (None, 'deg')
+    """
+    return next((metric for metric in METRICS.values() if metric.key == key), None)
+
+
+def label_of(key: str) -> str:
+    """Return what a metric is called on a line of text; one of another version by its key."""
+    metric = metric_named(key)
+    return key if metric is None else metric.label
+
+
 @dataclass(frozen=True, slots=True)
 class Budget:
     """The largest value allowed of a metric.

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-from des_cli.model.metric import METRICS
-from des_cli.results.reading import number, section
+from des_cli.model.metric import metric_named
+from des_cli.model.metrics import Metrics
 
 _LONGEST = 60
 
@@ -38,23 +36,23 @@ class Spent:
         return f"{self.label} {self.spent:.4g} of {self.most:g} {self.unit}".rstrip()
 
 
-def spent_budgets(metrics: Mapping[str, Any]) -> list[Spent]:
+def spent_budgets(metrics: Metrics) -> list[Spent]:
     """Return the budgets of a run in the order in which they were set.
 
     The metrics may come from a stranger: a budget without numbers is left out.
 
-    >>> metrics = {"solver": {"budget": {"seat_g_rms_error_g": 0.05}},
-    ...            "fidelity": {"seat_g_rms_error_g": 0.049999}}
-    >>> print(*spent_budgets(metrics))
-    G error 0.05 of 0.05 g
+    >>> from des_cli.model.metric import SEAT_G_ERROR
+    >>> from des_cli.model.metrics import Fidelity, SolverFacts
+    >>> solver, fidelity = SolverFacts(budget={SEAT_G_ERROR: 0.05}), Fidelity({SEAT_G_ERROR: 0.049})
+    >>> print(*spent_budgets(Metrics(solver=solver, fidelity=fidelity)))
+    G error 0.049 of 0.05 g
     """
     found = []
-    for key in section(metrics, "solver.budget"):
-        most = number(section(metrics, "solver.budget"), key)
-        spent = number(section(metrics, "fidelity"), key)
-        if most is None or spent is None:
+    for key, most in (metrics.solver.budget or {}).items():
+        spent = metrics.fidelity.metrics.get(key)
+        if spent is None:
             continue
-        metric = next((each for each in METRICS.values() if each.key == key), None)
+        metric = metric_named(key)
         if metric is None:
             found.append(Spent(_line(key), spent, most, ""))
         elif metric.relative:

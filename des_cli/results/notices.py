@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from des_cli.kinematics.noise import suggest_smoothing
@@ -13,11 +11,11 @@ from des_cli.model.metric import (
     ANGULAR_ACCELERATION_ERROR,
     FACTOR_DEVIATION,
     JOINT_DEVIATION,
-    METRICS,
     SEAT_G_DEVIATION,
     SEAT_RATE_DEVIATION,
-    MetricKey,
+    label_of,
 )
+from des_cli.model.metrics import Metrics
 from des_cli.model.motion import DesiredMotion
 from des_cli.model.profile import Profile
 from des_cli.results.asked_g import asked_g_sentence
@@ -48,7 +46,7 @@ NOTICEABLE = 1e-3
 """Change of a desired angle [rad] by the limits that is worth a sentence."""
 
 
-def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
+def find_notices(profile: Profile, asked: DesiredMotion, metrics: Metrics) -> list[str]:
     """Return the sentences of a run.
 
     Parameters
@@ -56,8 +54,8 @@ def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]
     profile : Profile
     asked : DesiredMotion
         What the profile asks for.
-    metrics : dict
-        As ``metrics.measure`` returns them.
+    metrics : Metrics
+        All of them but the sentences.
 
     Returns
     -------
@@ -84,8 +82,8 @@ def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]
     return [sentence for sentence in found if sentence]
 
 
-def _usable(metrics: dict[str, Any]) -> bool:
-    return metrics["solver"]["status"] in ("converged", "acceptable")
+def _usable(metrics: Metrics) -> bool:
+    return metrics.solver.status in ("converged", "acceptable")
 
 
 def _damped(asked: DesiredMotion) -> str:
@@ -100,14 +98,17 @@ def _damped(asked: DesiredMotion) -> str:
     )
 
 
-def _replaced(metrics: dict[str, Any]) -> str:
-    change = metrics["executable"]["joint_change_max_rad"]
-    moved = [f"{joint} {value:.3g} rad" for joint, value in change.items() if value > NOTICEABLE]
+def _replaced(metrics: Metrics) -> str:
+    moved = [
+        f"{joint} {value:.3g} rad"
+        for joint, value in metrics.executable.change.joint_change_max_rad.items()
+        if value is not None and value > NOTICEABLE
+    ]
     if not moved:
         return ""
     why = (
         "breaks limits; it was replaced by the nearest one inside them"
-        if metrics["executable"]["breaks_limits"]
+        if metrics.executable.breaks_limits
         else "was made consistent: its angles are the integrals of its rates"
     )
     return (
@@ -116,9 +117,8 @@ def _replaced(metrics: dict[str, Any]) -> str:
     )
 
 
-def _bought(metrics: dict[str, Any]) -> str:
-    parts = metrics["coriolis"]
-    objective = parts["objective"]["reduction"]
+def _bought(metrics: Metrics) -> str:
+    objective = metrics.coriolis.objective.reduction
     if not _usable(metrics):
         return ""
     if objective is not None and objective < 0.0:
@@ -127,17 +127,18 @@ def _bought(metrics: dict[str, Any]) -> str:
             "nothing was gained"
         )
     # Of components in the study's axes the pilot feels none: only who weighs them hears of them.
-    axes = metrics["solver"].get("axes")
+    axes = metrics.solver.axes
     grown = [
         f"{component.label} grew by {-100 * reduction:.0f} %"
         for component in COMPONENTS
         if axes != "seat" or component.axes != "report"
-        if (reduction := parts[component.key]["reduction"]) is not None and reduction < -BOUGHT
+        if (reduction := metrics.coriolis.reduction(component.key)) is not None
+        and reduction < -BOUGHT
     ]
     return f"one component was bought with another: {', '.join(grown)}" if grown else ""
 
 
-def _worse(metrics: dict[str, Any]) -> str:
+def _worse(metrics: Metrics) -> str:
     """Say what a pilot would rather not have, with all its numbers."""
     found = find_worse(metrics) if _usable(metrics) else []
     if not found:
@@ -149,36 +150,35 @@ def _worse(metrics: dict[str, Any]) -> str:
     )
 
 
-def _felt(metrics: dict[str, Any]) -> str:
+def _felt(metrics: Metrics) -> str:
     """Say that a small change of angles is not a small change of what is felt."""
-    fidelity = metrics["fidelity"]
-    budget = metrics["solver"].get("budget") or {}
-    measures: tuple[MetricKey, ...] = (SEAT_RATE_DEVIATION, SEAT_G_DEVIATION)
-    others = {key: fidelity[key] for key in measures if key not in budget}
-    off = {key: value for key, value in others.items() if value is not None and value >= FELT}
+    budget = metrics.solver.budget or {}
+    off = {
+        key: value
+        for key in (SEAT_RATE_DEVIATION, SEAT_G_DEVIATION)
+        if key not in budget and (value := metrics.fidelity.value(key) or 0.0) >= FELT
+    }
     if not _usable(metrics) or not off:
         return ""
-    said = ", ".join(
-        f"{METRICS[key].label} is off by {100 * value:.0f} %" for key, value in off.items()
-    )
-    joints = 100 * fidelity[JOINT_DEVIATION]
+    said = ", ".join(f"{label_of(key)} is off by {100 * value:.0f} %" for key, value in off.items())
+    joints = 100 * (metrics.fidelity.value(JOINT_DEVIATION) or 0.0)
     return (
         f"what the pilot feels is changed: {said}, at {joints:.1f} % in the joints; "
         f"a budget on {' or '.join(off)} bounds that"
     )
 
 
-def _ill_posed(metrics: dict[str, Any]) -> str:
+def _ill_posed(metrics: Metrics) -> str:
     """Say that the budgets leave the rates free, and how the commands look for it."""
-    solver = metrics["solver"]
-    budget = solver.get("budget") or {}
-    posed = solver.get("control") == "scalar" or solver.get("objective", "coriolis") != "coriolis"
+    solver = metrics.solver
+    budget = solver.budget or {}
+    posed = solver.control == "scalar" or solver.objective not in (None, "coriolis")
     if not budget or RESTRAINING & set(budget) or posed or not _usable(metrics):
         return ""
-    labels = " and ".join(METRICS[key].label for key in budget)
+    labels = " and ".join(label_of(key) for key in budget)
     driven = {
-        joint: part["acceleration_sign_changes"]
-        for joint, part in metrics["limits"]["modified"].items()
+        joint: load.acceleration_sign_changes or 0
+        for joint, load in metrics.limits.modified.items()
     }
     joint = max(driven, key=lambda name: driven[name])
     how = (
@@ -192,13 +192,13 @@ def _ill_posed(metrics: dict[str, Any]) -> str:
     )
 
 
-def _nothing(metrics: dict[str, Any]) -> str:
-    if metrics["coriolis"]["vector"]["reduction"] is not None:
+def _nothing(metrics: Metrics) -> str:
+    if metrics.coriolis.reduction("vector") is not None:
         return ""
     return "the desired motion makes no cross-coupling: there is nothing to reduce"
 
 
-def _short(metrics: dict[str, Any]) -> str:
-    if metrics["solver"]["status"] != "acceptable":
+def _short(metrics: Metrics) -> str:
+    if metrics.solver.status != "acceptable":
         return ""
-    return f"acceptable, not converged: {metrics['solver']['message']}"
+    return f"acceptable, not converged: {metrics.solver.message}"

@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from types import MappingProxyType
+from typing import Literal, TypeAlias
 
+from des_cli.model.felt import G_AXES, BeforeAfter, GAxis
 from des_cli.model.machine import JOINTS
-from des_cli.results.reading import lookup, number
+from des_cli.model.metric import ANGULAR_ACCELERATION_PEAK_RATIO, ANGULAR_ACCELERATION_RMS_RATIO
+from des_cli.model.metrics import Metrics
 
 SHARE = 0.05
 """Relative growth of the total angular acceleration's rms, or of the G onset, that is told:
@@ -39,7 +42,14 @@ LEAST_START_ANGLE = 0.01
 """Difference of a joint's angle at the start [rad] that is told, of a joint whose start
 is not among the constants to be found: half a degree, more than rounding by far."""
 
-_TOTAL = "felt.seat_angular_acceleration.magnitude"
+FeltNumber: TypeAlias = Literal[
+    "turning rms", "turning peak", "gy peak", "gx onset", "gy onset", "gz onset", "start"
+]
+"""What of the ride may be told to have got worse."""
+
+_ONSETS: Mapping[GAxis, FeltNumber] = MappingProxyType(
+    {"gx": "gx onset", "gy": "gy onset", "gz": "gz onset"}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,28 +61,28 @@ class Worse:
     label : str
     text : str
         Its numbers, with their unit.
-    paths : tuple of str
-        Where the worse numbers stand in the metrics.
+    numbers : tuple of FeltNumber
+        Which they are.
     cure : str
         What bounds it, as a part of a sentence.
     """
 
     label: str
     text: str
-    paths: tuple[str, ...] = ()
+    numbers: tuple[FeltNumber, ...] = ()
     cure: str = ""
 
     def __str__(self) -> str:
         return f"{self.label} {self.text}"
 
 
-def find_worse(metrics: Mapping[str, Any]) -> list[Worse]:
+def find_worse(metrics: Metrics) -> list[Worse]:
     """Return what of the ride got worse by more than its threshold.
 
     Parameters
     ----------
-    metrics : mapping
-        The content of ``metrics.json``; what is not known is not told.
+    metrics : Metrics
+        What is not known of them is not told.
 
     Returns
     -------
@@ -83,12 +93,12 @@ def find_worse(metrics: Mapping[str, Any]) -> list[Worse]:
     return [*_angular(metrics), *_sideways(metrics), *_onset(metrics), *_start(metrics)]
 
 
-def worse_words(metrics: Mapping[str, Any], *, short: bool = False) -> str:
+def worse_words(metrics: Metrics, *, short: bool = False) -> str:
     """Return what got worse in one line, empty where nothing did.
 
     Parameters
     ----------
-    metrics : mapping
+    metrics : Metrics
     short : bool
         Give the first measure alone, for a line among many.
     """
@@ -97,67 +107,73 @@ def worse_words(metrics: Mapping[str, Any], *, short: bool = False) -> str:
     return f"worse to sit in: {told}" if told else ""
 
 
-def worse_paths(metrics: Mapping[str, Any]) -> frozenset[str]:
-    """Return where the numbers stand in the metrics that got worse."""
-    return frozenset(path for each in find_worse(metrics) for path in each.paths)
+def worse_numbers(metrics: Metrics) -> frozenset[FeltNumber]:
+    """Return which numbers of the ride got worse."""
+    return frozenset(number for each in find_worse(metrics) for number in each.numbers)
 
 
-def _grew(before: float, after: float, least: float, share: float = SHARE) -> bool:
+def _grew(pair: BeforeAfter, least: float, share: float = SHARE) -> bool:
+    if pair.known is None:
+        return False
+    before, after = pair.known
     return after - before > max(share * before, least)
 
 
-def _angular(metrics: Mapping[str, Any]) -> list[Worse]:
-    texts, paths = [], []
-    for kind, share in (("rms", SHARE), ("peak", PEAK_SHARE)):
-        path = f"{_TOTAL}.{kind}_after_rad_s2"
-        before, after = number(metrics, f"{_TOTAL}.{kind}_before_rad_s2"), number(metrics, path)
-        if before is None or after is None:
-            continue
-        if _grew(before, after, LEAST_ANGULAR_ACCELERATION, share):
-            numbers = f"{before:.3g} -> {after:.3g} rad/s²"
-            texts.append(f"{numbers} rms" if kind == "rms" else f"peak {numbers}")
-            paths.append(path)
-    label = "total angular acceleration"
-    kinds = [kind for kind in ("rms", "peak") if any(f".{kind}_" in path for path in paths)]
-    cure = "a budget on " + " and ".join(
-        f"seat_angular_acceleration_{kind}_ratio" for kind in kinds
-    )
-    return [Worse(label, ", ".join(texts), tuple(paths), cure)] if texts else []
-
-
-def _sideways(metrics: Mapping[str, Any]) -> list[Worse]:
-    path = "felt.seat_g.gy.peak_after_g"
-    before, after = number(metrics, "felt.seat_g.gy.peak_before_g"), number(metrics, path)
-    if before is None or after is None or after - before <= LEAST_GY:
+def _angular(metrics: Metrics) -> list[Worse]:
+    turning = metrics.felt.turning
+    texts: list[str] = []
+    numbers: list[FeltNumber] = []
+    cures = []
+    if _grew(turning.rms, LEAST_ANGULAR_ACCELERATION):
+        texts.append(f"{_from_to(turning.rms, 3)} rad/s² rms")
+        numbers.append("turning rms")
+        cures.append(ANGULAR_ACCELERATION_RMS_RATIO)
+    if _grew(turning.peak, LEAST_ANGULAR_ACCELERATION, PEAK_SHARE):
+        texts.append(f"peak {_from_to(turning.peak, 3)} rad/s²")
+        numbers.append("turning peak")
+        cures.append(ANGULAR_ACCELERATION_PEAK_RATIO)
+    if not texts:
         return []
-    return [Worse("peak Gy", f"{before:.2g} -> {after:.2g} g", (path,), "the machine's gy_g")]
+    label, cure = "total angular acceleration", f"a budget on {' and '.join(cures)}"
+    return [Worse(label, ", ".join(texts), tuple(numbers), cure)]
 
 
-def _onset(metrics: Mapping[str, Any]) -> list[Worse]:
+def _sideways(metrics: Metrics) -> list[Worse]:
+    peak = metrics.felt.seat_g["gy"].peak
+    if not _grew(peak, LEAST_GY, share=0.0):
+        return []
+    return [Worse("peak Gy", f"{_from_to(peak, 2)} g", ("gy peak",), "the machine's gy_g")]
+
+
+def _onset(metrics: Metrics) -> list[Worse]:
     """Return the onset of the axis on which it grew most."""
-    grown = []
-    for axis in ("gx", "gy", "gz"):
-        path = f"felt.seat_g.{axis}.onset_after_g_s"
-        before = number(metrics, f"felt.seat_g.{axis}.onset_before_g_s")
-        after = number(metrics, path)
-        if before is not None and after is not None and _grew(before, after, LEAST_ONSET):
-            grown.append((after - before, axis, f"{before:.2g} -> {after:.2g} g/s", path))
+    onsets = {axis: metrics.felt.seat_g[axis].onset for axis in G_AXES}
+    grown = {
+        axis: pair.known[1] - pair.known[0]
+        for axis, pair in onsets.items()
+        if pair.known is not None and _grew(pair, LEAST_ONSET)
+    }
     if not grown:
         return []
-    _, axis, text, _ = max(grown)
-    paths = tuple(path for *_, path in grown)
-    return [Worse(f"{axis.capitalize()} onset", text, paths, "the machine's g_onset_g_s")]
+    most = max(grown, key=lambda axis: (grown[axis], axis))
+    text = f"{_from_to(onsets[most], 2)} g/s"
+    numbers = tuple(_ONSETS[axis] for axis in grown)
+    return [Worse(f"{most.capitalize()} onset", text, numbers, "the machine's g_onset_g_s")]
 
 
-def _start(metrics: Mapping[str, Any]) -> list[Worse]:
-    optimise = lookup(metrics, "solver.optimise")
-    freed = optimise if isinstance(optimise, list) else []
+def _from_to(pair: BeforeAfter, digits: int) -> str:
+    return f"{pair.before:.{digits}g} -> {pair.after:.{digits}g}"
+
+
+def _start(metrics: Metrics) -> list[Worse]:
+    angles, rates = metrics.fidelity.offset("start")
     off = []
     for joint in JOINTS:
-        angle = number(metrics, f"fidelity.start_error.{joint}_rad") or 0.0
-        rate = number(metrics, f"fidelity.start_error.{joint}_rad_s") or 0.0
-        if abs(angle) > LEAST_START_ANGLE and f"{joint}_start" not in freed:
+        angle, rate = angles.get(joint) or 0.0, rates.get(joint) or 0.0
+        freed = f"{joint}_start" in metrics.solver.optimise
+        if abs(angle) > LEAST_START_ANGLE and not freed:
             off.append(f"{joint} {angle:+.2g} rad")
         if abs(rate) > LEAST_START_RATE:
             off.append(f"{joint} {rate:+.2g} rad/s")
-    return [Worse("start off by", ", ".join(off), cure="ends: match-start")] if off else []
+    cure = "ends: match-start"
+    return [Worse("start off by", ", ".join(off), ("start",), cure)] if off else []

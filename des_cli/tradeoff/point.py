@@ -6,7 +6,7 @@ factors, follow the same desired motion, so that all points are measured alike.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
 from typing import Any
@@ -15,13 +15,16 @@ import numpy as np
 
 from des_cli.kinematics.response import respond, respond_as_asked
 from des_cli.model.arrays import Floats
+from des_cli.model.coriolis import ComponentKey
 from des_cli.model.metric import (
     ANGULAR_ACCELERATION_ERROR,
     ATTITUDE_ERROR,
     JOINT_DEVIATION,
     SEAT_G_ERROR,
     SEAT_RATE_DEVIATION,
+    MetricKey,
 )
+from des_cli.model.metrics import Metrics
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Run
@@ -44,6 +47,15 @@ CONSTANT_FACTORS = (0.99, 0.98, 0.95, 0.9, 0.85, 0.8, 0.7)
 SLACK = 1e-3
 """Reduction that one point may have less than a tighter one before it is worth a word:
 the regularisation beside a budget costs less than that."""
+
+_PARTS: tuple[ComponentKey, ...] = ("bb3", "vector", "seat_x", "seat_y", "seat_z")
+_COSTS: tuple[MetricKey, ...] = (
+    JOINT_DEVIATION,
+    SEAT_RATE_DEVIATION,
+    SEAT_G_ERROR,
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
+)
 
 
 def trade_point(
@@ -86,7 +98,7 @@ def trade_point(
     )
     if run.solution.status not in SOLVED:
         return point
-    return replace(point, cost=run.solution.cost, **_measures(run.metrics))
+    return replace(point, cost=run.solution.cost, **_measures(run.results))
 
 
 def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[TradePoint]:
@@ -243,24 +255,16 @@ def _measure(
     )
 
 
-def _measures(metrics: Mapping[str, Any]) -> dict[str, Any]:
+def _measures(metrics: Metrics) -> dict[str, Any]:
     """Return the numbers of a point from the metrics of a run."""
-    parts = ("objective", "bb3", "vector", "seat_x", "seat_y", "seat_z")
-    costs = (
-        JOINT_DEVIATION,
-        SEAT_RATE_DEVIATION,
-        SEAT_G_ERROR,
-        ANGULAR_ACCELERATION_ERROR,
-        ATTITUDE_ERROR,
-    )
-    turning = metrics["felt"]["seat_angular_acceleration"]["magnitude"]
+    coriolis, turning = metrics.coriolis, metrics.felt.turning
     return {
-        **{f"{part}_reduction": metrics["coriolis"][part]["reduction"] for part in parts},
-        **{key: metrics["fidelity"][key] for key in costs},
-        **{
-            f"seat_angular_acceleration_{kind}{column}_rad_s2": turning[f"{kind}_{when}_rad_s2"]
-            for kind in ("rms", "peak")
-            for column, when in (("_before", "before"), ("", "after"))
-        },
-        "limits_ok": all(joint["ok"] for joint in metrics["limits"]["modified"].values()),
+        "objective_reduction": coriolis.objective.reduction,
+        **{f"{part}_reduction": coriolis.reduction(part) for part in _PARTS},
+        **{key: metrics.fidelity.value(key) for key in _COSTS},
+        "seat_angular_acceleration_rms_before_rad_s2": turning.rms.before,
+        "seat_angular_acceleration_rms_rad_s2": turning.rms.after,
+        "seat_angular_acceleration_peak_before_rad_s2": turning.peak.before,
+        "seat_angular_acceleration_peak_rad_s2": turning.peak.after,
+        "limits_ok": all(load.ok for load in metrics.limits.modified.values()),
     }

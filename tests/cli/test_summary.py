@@ -6,10 +6,12 @@ from typing import Any
 import pytest
 
 from des_cli.batch.job import JobResult
+from des_cli.cli import summary_rows as rows_of
 from des_cli.cli.console import Console
 from des_cli.cli.summary import exit_code_of, print_closing, print_result
-from des_cli.cli.summary_rows import change, number, percent, summary_rows
+from des_cli.cli.summary_rows import change, number, percent
 from des_cli.errors import ExitCode
+from des_cli.results.reading import read_metrics
 
 METRICS = {
     "solver": {
@@ -88,6 +90,10 @@ METRICS = {
 def result(**changes: object) -> JobResult:
     values = {"source": "c.yaml", "name": "c", "metrics": METRICS, "objective": ("bb3",)}
     return JobResult(**values | {"written": "runs/c"} | changes)  # type: ignore[arg-type]
+
+
+def summary_rows(shown: JobResult) -> list[tuple[str, str]]:
+    return rows_of.summary_rows(read_metrics(shown.metrics), shown.objective)
 
 
 def with_change(path: str, value: object) -> JobResult:

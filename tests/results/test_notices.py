@@ -12,7 +12,8 @@ from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machines import DES
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import JointCommands, Profile
-from des_cli.results.notices import find_notices
+from des_cli.results import notices
+from des_cli.results.reading import read_metrics
 
 PROFILE = Profile(
     "p",
@@ -20,6 +21,10 @@ PROFILE = Profile(
     JointCommands(np.zeros(6), np.zeros((6, 2)), np.zeros((5, 2)), np.zeros((5, 2))),
     DES,
 )
+
+
+def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
+    return notices.find_notices(profile, asked, read_metrics(metrics))
 
 
 def asked(*, damped: tuple[int, ...] = ()) -> DesiredMotion:
