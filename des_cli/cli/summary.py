@@ -7,16 +7,14 @@ from des_cli.cli.console import Console
 from des_cli.cli.summary_rows import (
     changes,
     limits_used,
-    number,
-    percent,
     summary_rows,
-    told_parts,
 )
 from des_cli.errors import ExitCode, Failure
 from des_cli.model.metric import SEAT_G_ERROR, SEAT_RATE_DEVIATION
 from des_cli.model.metrics import Metrics
 from des_cli.results.reading import read_metrics
 from des_cli.results.worse import worse_words
+from des_cli.show.words import CONSOLE, steps_taken, told_parts
 
 _LABEL_WIDTH = 14
 
@@ -85,13 +83,12 @@ def print_closing(console: Console, results: list[JobResult], planned: int) -> N
 def _headlines(console: Console, profile: str, metrics: Metrics) -> list[str]:
     """Return the first lines: what got worse, if anything, then how it was solved."""
     solver = metrics.solver
-    steps = "1 iteration" if solver.iterations == 1 else f"{solver.iterations} iterations"
     how = (
         f"{solver.method} cross-coupling by {solver.algorithm}, "
         f"{solver.control} control, {solver.axes} axes"
     )
     look = "good" if solver.status == "converged" else "warning"
-    ended = console.style(f"{solver.status} in {steps}", look)
+    ended = console.style(f"{solver.status} in {steps_taken(solver.iterations)}", look)
     status = f"{ended} ({how})"
     name = console.style(profile, "title")
     worse = worse_words(metrics)
@@ -110,8 +107,8 @@ def _idle_line(console: Console, result: JobResult) -> str:
 
 
 def _reduced_line(console: Console, result: JobResult, metrics: Metrics) -> str:
-    rate = percent(metrics.fidelity.value(SEAT_RATE_DEVIATION))
-    error = number(metrics.fidelity.value(SEAT_G_ERROR))
+    rate = CONSOLE.percent(metrics.fidelity.value(SEAT_RATE_DEVIATION))
+    error = CONSOLE.number(metrics.fidelity.value(SEAT_G_ERROR))
     gained = changes(metrics, told_parts(result.objective))
     worse = worse_words(metrics, short=True)
     told = f"{console.style(worse, 'warning')}; " if worse else ""

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection
 from typing import get_args
 
-from des_cli.model.coriolis import COMPONENTS, ComponentKey
-from des_cli.model.felt import BeforeAfter
+from des_cli.model.coriolis import ComponentKey
 from des_cli.model.metric import (
     ATTITUDE_ERROR,
     JOINT_DEVIATION,
@@ -18,6 +16,7 @@ from des_cli.model.metric import (
 from des_cli.model.metrics import Change, Driven, Metrics, When
 from des_cli.results.budgets import spent_budgets
 from des_cli.results.ends import end_words
+from des_cli.show.words import CONSOLE, PARTS, axis_name, told_parts
 
 _DRIVEN: tuple[Driven, ...] = get_args(Driven)
 
@@ -65,15 +64,15 @@ def _change_numbers(step: Change) -> list[str]:
     numbers = [
         text
         for value, least, text in (
-            (rate, 0.0005, f"seat rate {percent(rate)}"),
-            (force, 0.0005, f"G {number(force)} g rms"),
-            (attitude, 0.05, f"attitude {number(attitude)} deg"),
+            (rate, 0.0005, f"seat rate {CONSOLE.percent(rate)}"),
+            (force, 0.0005, f"G {CONSOLE.number(force)} g rms"),
+            (attitude, 0.05, f"attitude {CONSOLE.number(attitude)} deg"),
         )
         if value >= least
     ]
     reduction = step.coriolis_reduction
     if numbers and reduction is not None and abs(reduction) >= 0.0005:
-        numbers.append(f"cross-coupling {change(reduction)}")
+        numbers.append(f"cross-coupling {CONSOLE.less(reduction)}")
     return numbers
 
 
@@ -81,46 +80,10 @@ def _constants(metrics: Metrics) -> str:
     """Say which constants were found together with the motion."""
     pairs = {name: each.angle.known for name, each in (metrics.parameters or {}).items()}
     return ", ".join(
-        f"{name.replace('_', ' ')} {pair[0]:.1f} -> {pair[1]:.1f} deg"
+        f"{name.replace('_', ' ')} {CONSOLE.fixed(pair[0], 1)} -> {CONSOLE.fixed(pair[1], 1)} deg"
         for name, pair in pairs.items()
         if pair is not None
     )
-
-
-def change(reduction: float | None) -> str:
-    """Say a reduction in words that need no sign.
-
-    >>> change(0.689), change(-0.28), change(None)
-    ('68.9 % less', '28.0 % more', 'not known')
-    """
-    if reduction is None or not math.isfinite(reduction):
-        return "not known"
-    return f"{percent(abs(reduction))} {'less' if reduction >= 0 else 'more'}"
-
-
-def percent(value: float | None) -> str:
-    """Write a ratio in percent, with digits that mean something.
-
-    >>> percent(0.6892), percent(0.00163), percent(7.5)
-    ('68.9 %', '0.16 %', '750 %')
-    """
-    if value is None or not math.isfinite(value):
-        return "not known"
-    hundredths = 100.0 * value
-    size = abs(hundredths)
-    digits = 0 if size >= 100 else 1 if size >= 1 else 2
-    return f"{hundredths:.{digits}f} %"
-
-
-def number(value: float | None) -> str:
-    """Write a number with three digits."""
-    return "not known" if value is None or not math.isfinite(value) else f"{value:.3g}"
-
-
-def told_parts(objective: Collection[str]) -> tuple[ComponentKey, ...]:
-    """Name the whole vector, and the component that was weighed, if it is one."""
-    weighed = tuple(each.key for each in COMPONENTS if each.key in objective)
-    return ("vector", *(weighed if len(weighed) == 1 else ()))
 
 
 def changes(metrics: Metrics, keys: tuple[ComponentKey, ...], *, rms: bool = False) -> str:
@@ -128,16 +91,10 @@ def changes(metrics: Metrics, keys: tuple[ComponentKey, ...], *, rms: bool = Fal
     texts = []
     for key in keys:
         part = metrics.coriolis.parts[key]
-        label = next(component.label for component in COMPONENTS if component.key == key)
-        text = f"{label} {change(part.reduction)}"
-        pair = _from_to(part.sizes.rms) if rms and key == "vector" else ""
+        text = f"{PARTS[key]} {CONSOLE.less(part.reduction)}"
+        pair = CONSOLE.from_to(part.sizes.rms) if rms and key == "vector" else ""
         texts.append(f"{text} ({pair} rad/s² rms)" if pair else text)
     return ", ".join(texts)
-
-
-def _from_to(pair: BeforeAfter) -> str:
-    """Write a quantity before and after, empty where either is not known."""
-    return "" if pair.known is None else f"{number(pair.before)} -> {number(pair.after)}"
 
 
 def _joined(*parts: tuple[str, str, str]) -> str:
@@ -150,9 +107,9 @@ def _joined(*parts: tuple[str, str, str]) -> str:
 def _turning(metrics: Metrics) -> str:
     rate, turning = metrics.fidelity.value(SEAT_RATE_DEVIATION), metrics.felt.turning
     return _joined(
-        ("total angular acceleration", _from_to(turning.rms), "rad/s² rms"),
-        ("peak", _from_to(turning.peak), ""),
-        ("seat rate off by", "" if rate is None else percent(rate), ""),
+        ("total angular acceleration", CONSOLE.from_to(turning.rms), "rad/s² rms"),
+        ("peak", CONSOLE.from_to(turning.peak), ""),
+        ("seat rate off by", "" if rate is None else CONSOLE.percent(rate), ""),
     )
 
 
@@ -160,10 +117,10 @@ def _force(metrics: Metrics) -> str:
     error, tilt = metrics.fidelity.value(SEAT_G_ERROR), metrics.fidelity.tilt_error_max_deg
     axis, sizes = metrics.felt.hardest_onset, metrics.felt.seat_g
     return _joined(
-        ("off by", "" if error is None else number(error), "g rms"),
-        ("tilt", "" if tilt is None else number(tilt), "deg at most"),
-        ("peak Gy", _from_to(sizes["gy"].peak), "g"),
-        (f"{axis.capitalize()} onset", _from_to(sizes[axis].onset), "g/s"),
+        ("off by", "" if error is None else CONSOLE.number(error), "g rms"),
+        ("tilt", "" if tilt is None else CONSOLE.number(tilt), "deg at most"),
+        ("peak Gy", CONSOLE.from_to(sizes["gy"].peak), "g"),
+        (f"{axis_name(axis)} onset", CONSOLE.from_to(sizes[axis].onset), "g/s"),
     )
 
 
@@ -187,21 +144,22 @@ def limits_used(metrics: Metrics) -> str:
                 shares.append((peak / limit, joint))
         if shares:
             share, joint = max(shares)
-            parts.append(f"{driven} {100 * share:.0f} % ({joint})")
+            parts.append(f"{driven} {CONSOLE.percent(share)} ({joint})")
     return f"; used at most: {', '.join(parts)}" if parts else ""
 
 
 def _study(metrics: Metrics) -> list[str]:
     """Say what the study's measure is, and what simpler means get on the same profile."""
-    joints = percent(metrics.fidelity.value(JOINT_DEVIATION))
-    squared = percent(metrics.fidelity.value(JOINT_DEVIATION_SQUARED))
+    joints = CONSOLE.percent(metrics.fidelity.value(JOINT_DEVIATION))
+    squared = CONSOLE.percent(metrics.fidelity.value(JOINT_DEVIATION_SQUARED))
     texts = [f"joints off by {joints} (squared {squared})"]
     sweep, constant = metrics.baseline.report_sweep, metrics.baseline.constant_p
     if sweep:
-        texts.append(f"its sweep: {change(sweep.reduction)} at {percent(sweep.joint_deviation)}")
+        cost = CONSOLE.percent(sweep.joint_deviation)
+        texts.append(f"its sweep: {CONSOLE.less(sweep.reduction)} at {cost}")
     if constant:
         texts.append(
-            f"a constant factor: as much by p = {number(constant.p)} "
-            f"at {percent(constant.joint_deviation)}"
+            f"a constant factor: as much by p = {CONSOLE.number(constant.p)} "
+            f"at {CONSOLE.percent(constant.joint_deviation)}"
         )
     return texts

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from des_cli.cli.summary_rows import change, number, percent
 from des_cli.model.metric import (
     ANGULAR_ACCELERATION_ERROR,
     ATTITUDE_ERROR,
@@ -14,22 +13,23 @@ from des_cli.model.metric import (
     SEAT_RATE_DEVIATION,
 )
 from des_cli.model.tradeoff import TradePoint
+from des_cli.show.words import CONSOLE, steps_taken
 
 # Columns: head, field, how a value is written.
 _COLUMNS = (
-    ("objective", "objective_reduction", percent),
-    ("vector", "vector_reduction", percent),
-    ("BB3", "bb3_reduction", percent),
-    ("seat x", "seat_x_reduction", percent),
-    ("seat y", "seat_y_reduction", percent),
-    ("seat z", "seat_z_reduction", percent),
-    ("joints", JOINT_DEVIATION, percent),
-    ("rate", SEAT_RATE_DEVIATION, percent),
-    ("G rms [g]", SEAT_G_ERROR, number),
-    ("α error", ANGULAR_ACCELERATION_ERROR, number),
-    ("α rms", "seat_angular_acceleration_rms_rad_s2", number),
-    ("α peak", "seat_angular_acceleration_peak_rad_s2", number),
-    ("turn [deg]", ATTITUDE_ERROR, number),
+    ("objective", "objective_reduction", CONSOLE.percent),
+    ("vector", "vector_reduction", CONSOLE.percent),
+    ("BB3", "bb3_reduction", CONSOLE.percent),
+    ("seat x", "seat_x_reduction", CONSOLE.percent),
+    ("seat y", "seat_y_reduction", CONSOLE.percent),
+    ("seat z", "seat_z_reduction", CONSOLE.percent),
+    ("joints", JOINT_DEVIATION, CONSOLE.percent),
+    ("rate", SEAT_RATE_DEVIATION, CONSOLE.percent),
+    ("G rms [g]", SEAT_G_ERROR, CONSOLE.number),
+    ("α error", ANGULAR_ACCELERATION_ERROR, CONSOLE.number),
+    ("α rms", "seat_angular_acceleration_rms_rad_s2", CONSOLE.number),
+    ("α peak", "seat_angular_acceleration_peak_rad_s2", CONSOLE.number),
+    ("turn [deg]", ATTITUDE_ERROR, CONSOLE.number),
 )
 _WIDTH = 11
 _TITLES = {
@@ -61,11 +61,11 @@ def point_line(point: TradePoint) -> str:
     name = f"{point.control}, {point.swept} {point.value:g}"
     if point.objective_reduction is None:
         return f"{name}: {point.status}: {point.message}"
-    steps = "1 iteration" if point.iterations == 1 else f"{point.iterations} iterations"
-    turning = number(point.seat_angular_acceleration_rms_rad_s2)
+    steps = steps_taken(point.iterations)
+    turning = CONSOLE.number(point.seat_angular_acceleration_rms_rad_s2)
     gained = (
-        f"{change(point.objective_reduction)} at joints {_joints(point)}, "
-        f"seat rate {percent(point.fidelity(SEAT_RATE_DEVIATION))}, α {turning} rad/s² rms"
+        f"{CONSOLE.less(point.objective_reduction)} at joints {_joints(point)}, "
+        f"seat rate {CONSOLE.percent(point.fidelity(SEAT_RATE_DEVIATION))}, α {turning} rad/s² rms"
     )
     why = f" ({point.message})" if point.status == "unverified" else ""
     return f"{name}: {point.status} in {steps}, {gained}{why}"
@@ -77,12 +77,12 @@ def _before(points: Sequence[TradePoint]) -> str:
         rms = point.seat_angular_acceleration_rms_before_rad_s2
         peak = point.seat_angular_acceleration_peak_before_rad_s2
         if rms is not None and peak is not None:
-            return f", before {number(rms)} rms and {number(peak)} peak"
+            return f", before {CONSOLE.number(rms)} rms and {CONSOLE.number(peak)} peak"
     return ""
 
 
 def _joints(point: TradePoint) -> str:
-    return percent(point.fidelity(JOINT_DEVIATION))
+    return CONSOLE.percent(point.fidelity(JOINT_DEVIATION))
 
 
 def _title(point: TradePoint) -> str:

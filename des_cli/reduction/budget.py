@@ -24,6 +24,7 @@ from des_cli.reduction.problem import Problem
 from des_cli.reduction.search import TOLERANCE, Search
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.interior import Outcome
+from des_cli.units import percent
 
 REGULARISATION = 2e-3
 """Weight on (1 - u)^2 beside a budget, relative to the mean of the desired motion's
@@ -116,7 +117,9 @@ def _spent(grid: Transcription, budgets: Sequence[Budget], best: Outcome) -> str
             square = float(np.max(bounds[SeatAccelerationRows].value(best.x)))
         else:
             square = next(measures).value(best.x)
-        shares.append(f"{np.sqrt(square):.2%} of the budget on {METRICS[budget.metric].key}")
+        shares.append(
+            f"{percent(float(np.sqrt(square)), 4)} of the budget on {METRICS[budget.metric].key}"
+        )
     sentence = f"{', '.join(shares)} {'is' if len(shares) == 1 else 'are'} spent"
     if not best.usable and any(measure.value(grid.desired) > 1.0 for measure in grid.budgets):
         sentence += "; the nearest motion inside the limits overspends already: allow more"

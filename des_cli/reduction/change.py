@@ -28,6 +28,7 @@ from des_cli.model.metric import (
 from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.profile import Reduction
 from des_cli.reduction.fidelity import Deviation
+from des_cli.units import percent
 
 LARGEST_CHANGE = 0.1
 """Share of the record's seat rate, or of an asked G, that may be changed before the
@@ -89,12 +90,12 @@ class Change:
         if all(shares[metric] <= allowed[metric] for metric in recorded):
             return ""
         told = " and ".join(
-            f"{100.0 * shares[metric]:.1f} % of its {METRICS[metric].label}" for metric in SHARES
+            f"{percent(shares[metric])} of its {METRICS[metric].label}" for metric in SHARES
         )
         enough = np.ceil(100.0 * max(shares[metric] for metric in recorded)) / 100.0
         return (
             f"the record is changed by {told} before any reduction, and "
-            f"{100.0 * min(allowed.values()):g} % is allowed; condition the record, or take "
+            f"{percent(min(allowed.values()), 6)} is allowed; condition the record, or take "
             f"--allow-change {enough:g}"
         )
 

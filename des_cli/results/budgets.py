@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from des_cli.model.metric import metric_named
 from des_cli.model.metrics import Metrics
+from des_cli.units import percent
 
 _LONGEST = 60
 
@@ -18,22 +19,32 @@ class Spent:
     ----------
     label : str
     spent, most : float
-        In ``unit``: a share is in percent.
+        In the metric's unit.
     unit : str
+        Empty where the metric is of another version, and its unit not known.
+    share : bool
+        Whether it is written in percent.
     """
 
     label: str
     spent: float
     most: float
-    unit: str
+    unit: str = ""
+    share: bool = False
 
     @property
     def allowed(self) -> str:
         """Say what is allowed."""
-        return f"{self.label} ≤ {self.most:g} {self.unit}".rstrip()
+        return f"{self.label} ≤ {self._most}"
+
+    @property
+    def _most(self) -> str:
+        # As it was given.
+        return percent(self.most, 6) if self.share else f"{self.most:g} {self.unit}".rstrip()
 
     def __str__(self) -> str:
-        return f"{self.label} {self.spent:.4g} of {self.most:g} {self.unit}".rstrip()
+        spent = percent(self.spent, 4).removesuffix(" %") if self.share else f"{self.spent:.4g}"
+        return f"{self.label} {spent} of {self._most}"
 
 
 def spent_budgets(metrics: Metrics) -> list[Spent]:
@@ -54,11 +65,9 @@ def spent_budgets(metrics: Metrics) -> list[Spent]:
             continue
         metric = metric_named(key)
         if metric is None:
-            found.append(Spent(_line(key), spent, most, ""))
-        elif metric.relative:
-            found.append(Spent(metric.label, 100.0 * spent, 100.0 * most, "%"))
+            found.append(Spent(_line(key), spent, most))
         else:
-            found.append(Spent(metric.label, spent, most, metric.unit))
+            found.append(Spent(metric.label, spent, most, metric.unit, metric.relative))
     return found
 
 

@@ -20,6 +20,7 @@ from des_cli.model.motion import DesiredMotion
 from des_cli.model.profile import Profile
 from des_cli.results.asked_g import asked_g_sentence
 from des_cli.results.worse import find_worse
+from des_cli.units import percent
 
 BOUGHT = 0.05
 """Relative growth of a Coriolis component's energy that is worth a sentence."""
@@ -123,13 +124,12 @@ def _bought(metrics: Metrics) -> str:
         return ""
     if objective is not None and objective < 0.0:
         return (
-            f"the cross-coupling that r1 weighs grew by {-100 * objective:.3g} %: "
-            "nothing was gained"
+            f"the cross-coupling that r1 weighs grew by {percent(-objective)}: nothing was gained"
         )
     # Of components in the study's axes the pilot feels none: only who weighs them hears of them.
     axes = metrics.solver.axes
     grown = [
-        f"{component.label} grew by {-100 * reduction:.0f} %"
+        f"{component.label} grew by {percent(-reduction)}"
         for component in COMPONENTS
         if axes != "seat" or component.axes != "report"
         if (reduction := metrics.coriolis.reduction(component.key)) is not None
@@ -160,10 +160,10 @@ def _felt(metrics: Metrics) -> str:
     }
     if not _usable(metrics) or not off:
         return ""
-    said = ", ".join(f"{label_of(key)} is off by {100 * value:.0f} %" for key, value in off.items())
-    joints = 100 * (metrics.fidelity.value(JOINT_DEVIATION) or 0.0)
+    said = ", ".join(f"{label_of(key)} is off by {percent(value)}" for key, value in off.items())
+    joints = percent(metrics.fidelity.value(JOINT_DEVIATION) or 0.0)
     return (
-        f"what the pilot feels is changed: {said}, at {joints:.1f} % in the joints; "
+        f"what the pilot feels is changed: {said}, at {joints} in the joints; "
         f"a budget on {' or '.join(off)} bounds that"
     )
 

@@ -21,8 +21,8 @@ from des_cli.results.budgets import spent_budgets
 from des_cli.results.ends import end_words
 from des_cli.results.worse import FeltNumber, worse_numbers
 from des_cli.runs_out.run_folder import StoredRun
-from des_cli.show.page.numbers import DASH, change, percent, plain, words
 from des_cli.show.plots.standing import status_words
+from des_cli.show.words import PAGE, text_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,12 +86,16 @@ def _fidelity(label: str, metric: MetricKey, write: Callable[[float | None], str
 
 def _gained(component: Component) -> _Quantity:
     return _Quantity(
-        component.label, lambda metrics: metrics.coriolis.reduction(component.key), change, 1
+        component.label, lambda metrics: metrics.coriolis.reduction(component.key), PAGE.change, 1
     )
 
 
 def _three(value: float | None) -> str:
-    return plain(value, 3)
+    return PAGE.number(value)
+
+
+def _four(value: float | None) -> str:
+    return PAGE.number(value, 4)
 
 
 def _sweep(metrics: Metrics) -> SweepBaseline:
@@ -122,7 +126,7 @@ _GROUPS: tuple[tuple[str, tuple[_Quantity, ...]], ...] = (
     (
         "How far from the profile",
         (
-            _fidelity("seat rate", SEAT_RATE_DEVIATION, percent),
+            _fidelity("seat rate", SEAT_RATE_DEVIATION, PAGE.percent),
             _fidelity(
                 "total angular acceleration, rms [rad/s²]", ANGULAR_ACCELERATION_ERROR, _three
             ),
@@ -131,7 +135,7 @@ _GROUPS: tuple[tuple[str, tuple[_Quantity, ...]], ...] = (
             _Quantity(
                 "seat rate, by keeping the limits alone",
                 lambda m: m.executable.change.value(SEAT_RATE_DEVIATION),
-                percent,
+                PAGE.percent,
             ),
         ),
     ),
@@ -142,22 +146,22 @@ _GROUPS: tuple[tuple[str, tuple[_Quantity, ...]], ...] = (
     (
         "The study's measure",
         (
-            _fidelity("joint deviation", JOINT_DEVIATION, percent),
-            _fidelity("… squared", JOINT_DEVIATION_SQUARED, percent),
+            _fidelity("joint deviation", JOINT_DEVIATION, PAGE.percent),
+            _fidelity("… squared", JOINT_DEVIATION_SQUARED, PAGE.percent),
             _Quantity(
                 "desired motion changed for the limits",
                 lambda m: m.executable.change.joint_change_relative,
-                percent,
+                PAGE.percent,
             ),
         ),
     ),
     (
         "What else would have done",
         (
-            _Quantity("study's single sweep", lambda m: _sweep(m).reduction, change),
-            _Quantity("… joint deviation", lambda m: _sweep(m).joint_deviation, percent),
-            _Quantity("constant p, equal reduction", lambda m: _constant(m).p, plain),
-            _Quantity("… joint deviation", lambda m: _constant(m).joint_deviation, percent),
+            _Quantity("study's single sweep", lambda m: _sweep(m).reduction, PAGE.change),
+            _Quantity("… joint deviation", lambda m: _sweep(m).joint_deviation, PAGE.percent),
+            _Quantity("constant p, equal reduction", lambda m: _constant(m).p, _four),
+            _Quantity("… joint deviation", lambda m: _constant(m).joint_deviation, PAGE.percent),
         ),
     ),
 )
@@ -179,17 +183,17 @@ def comparison_rows(metrics: Sequence[Metrics]) -> list[Row]:
     solvers = [each.solver for each in metrics]
     rows = [
         Row("status", tuple(_status(each) for each in metrics)),
-        Row("method", tuple(Cell(words(each.method)) for each in solvers)),
-        Row("algorithm", tuple(Cell(words(each.algorithm)) for each in solvers)),
-        Row("control", tuple(Cell(words(each.control)) for each in solvers)),
-        Row("axes", tuple(Cell(words(each.axes)) for each in solvers)),
+        Row("method", tuple(Cell(text_of(each.method)) for each in solvers)),
+        Row("algorithm", tuple(Cell(text_of(each.algorithm)) for each in solvers)),
+        Row("control", tuple(Cell(text_of(each.control)) for each in solvers)),
+        Row("axes", tuple(Cell(text_of(each.axes)) for each in solvers)),
         Row("budget", tuple(_budget(each) for each in metrics)),
         Row("limits", tuple(limits_cell(each) for each in metrics)),
-        Row("cost J", tuple(Cell(plain(each.cost)) for each in solvers)),
+        Row("cost J", tuple(Cell(PAGE.number(each.cost, 4)) for each in solvers)),
     ]
     for when in get_args(When):
         ends = (end_words(each.fidelity, when) for each in metrics)
-        rows.append(Row(when, tuple(Cell(words or DASH) for words in ends)))
+        rows.append(Row(when, tuple(Cell(words or PAGE.unknown) for words in ends)))
     for heading, quantities in _GROUPS:
         rows += [Row(heading), *(_compared(quantity, metrics) for quantity in quantities)]
     return rows
@@ -210,16 +214,16 @@ def limits_cell(metrics: Metrics) -> Cell:
     broken = [joint for joint, ok in verdicts.items() if ok is False]
     if broken:
         return Cell(f"broken: {', '.join(broken)}", "bad")
-    return Cell("kept" if all(ok is True for ok in verdicts.values()) else DASH)
+    return Cell("kept" if all(ok is True for ok in verdicts.values()) else PAGE.unknown)
 
 
 def _status(metrics: Metrics) -> Cell:
     unfinished = status_words(metrics)
-    return Cell(unfinished or words(metrics.solver.status), "bad" if unfinished else "")
+    return Cell(unfinished or text_of(metrics.solver.status), "bad" if unfinished else "")
 
 
 def _budget(metrics: Metrics) -> Cell:
-    return Cell(", ".join(each.allowed for each in spent_budgets(metrics)) or DASH)
+    return Cell(", ".join(each.allowed for each in spent_budgets(metrics)) or PAGE.unknown)
 
 
 def _compared(quantity: _Quantity, metrics: Sequence[Metrics]) -> Row:

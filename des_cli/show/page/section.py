@@ -9,12 +9,12 @@ from des_cli.model.metric import ATTITUDE_ERROR, FACTOR_DEVIATION
 from des_cli.model.metrics import Metrics
 from des_cli.runs_out.run_folder import StoredRun
 from des_cli.show.page.comparison import Cell
-from des_cli.show.page.numbers import DASH, NO_BREAK, percent, plain, words
 from des_cli.show.page.summary import summary_sentences
 from des_cli.show.page.tables import coriolis_rows, joint_rows, limit_rows, seat_rows, turning_rows
 from des_cli.show.page.tiles import Tile, felt_tiles
 from des_cli.show.plots import CAPTIONS, draw_plots
 from des_cli.show.plots.standing import budget_words
+from des_cli.show.words import PAGE, text_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,10 +107,10 @@ def run_section(run: StoredRun, metrics: Metrics, label: str, number_of_run: int
 def _what(metrics: Metrics) -> str:
     solver, profile = metrics.solver, metrics.profile
     return (
-        f"{words(solver.method)} cross-coupling by {words(solver.algorithm)} · "
-        f"{words(solver.control)} control · {words(solver.axes)} axes · "
-        f"Jacobian at {words(solver.jacobian)} motion · {words(profile.samples)} samples over "
-        f"{plain(profile.duration_s)}{NO_BREAK}s"
+        f"{text_of(solver.method)} cross-coupling by {text_of(solver.algorithm)} · "
+        f"{text_of(solver.control)} control · {text_of(solver.axes)} axes · "
+        f"Jacobian at {text_of(solver.jacobian)} motion · {text_of(profile.samples)} samples over "
+        f"{PAGE.number(profile.duration_s, 4)}{PAGE.space}s"
     )
 
 
@@ -119,24 +119,27 @@ def _facts(run: StoredRun, metrics: Metrics) -> list[tuple[str, str]]:
     tool = run.manifest.get("tool")
     maker = tool if isinstance(tool, dict) else {}
     return [
-        ("status", f"{words(solver.status)}: {words(solver.message)}"),
-        ("iterations", words(solver.iterations)),
-        ("budget", budget_words(metrics) or DASH),
-        ("limits", words(solver.limits)),
-        ("cost J", f"{plain(solver.cost, 7)} (unreduced {plain(solver.cost_unreduced, 7)})"),
-        ("optimality", plain(solver.optimality, 2)),
-        ("mean of (1 − p)²", percent(fidelity.value(FACTOR_DEVIATION))),
+        ("status", f"{text_of(solver.status)}: {text_of(solver.message)}"),
+        ("iterations", text_of(solver.iterations)),
+        ("budget", budget_words(metrics) or PAGE.unknown),
+        ("limits", text_of(solver.limits)),
+        (
+            "cost J",
+            f"{PAGE.number(solver.cost, 7)} (unreduced {PAGE.number(solver.cost_unreduced, 7)})",
+        ),
+        ("optimality", PAGE.number(solver.optimality, 2)),
+        ("mean of (1 − p)²", PAGE.percent(fidelity.value(FACTOR_DEVIATION))),
         (
             "largest error of attitude, of tilt",
-            f"{plain(fidelity.value(ATTITUDE_ERROR), 3)} deg, "
-            f"{plain(fidelity.tilt_error_max_deg, 3)} deg",
+            f"{PAGE.number(fidelity.value(ATTITUDE_ERROR), 3)} deg, "
+            f"{PAGE.number(fidelity.tilt_error_max_deg, 3)} deg",
         ),
         (
             "singularity",
-            f"least |cos θ₂| {plain(singularity.min_abs_cos_fork, 3)}, "
-            f"damped samples {words(singularity.damped_samples)}, "
-            f"residual {plain(singularity.max_residual_rad_s, 3)} rad/s",
+            f"least |cos θ₂| {PAGE.number(singularity.min_abs_cos_fork, 3)}, "
+            f"damped samples {text_of(singularity.damped_samples)}, "
+            f"residual {PAGE.number(singularity.max_residual_rad_s, 3)} rad/s",
         ),
-        ("profile's SHA-256", words(metrics.profile.sha256)),
-        ("made by", f"{words(maker.get('name'))} {words(maker.get('version'))}"),
+        ("profile's SHA-256", text_of(metrics.profile.sha256)),
+        ("made by", f"{text_of(maker.get('name'))} {text_of(maker.get('version'))}"),
     ]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-
 from des_cli.model.coriolis import COMPONENTS, ComponentKey
 from des_cli.model.metric import (
     JOINT_DEVIATION,
@@ -14,14 +12,9 @@ from des_cli.model.metric import (
 from des_cli.model.metrics import Metrics
 from des_cli.results.worse import worse_words
 from des_cli.show.page.comparison import limits_cell
-from des_cli.show.page.numbers import percent, plain, words
 from des_cli.show.plots.standing import budget_words, change_words
 from des_cli.show.plots.weighted import weighted_component
-
-_NAMES: Mapping[ComponentKey, str] = {
-    component.key: component.label if component.axes else f"the {component.label}"
-    for component in COMPONENTS
-}
+from des_cli.show.words import PAGE, in_sentence, listed, text_of
 
 # A component that grows by less is rounding, or noise in a component that
 # hardly exists.
@@ -56,7 +49,7 @@ def summary_sentences(metrics: Metrics) -> list[str]:
 
 
 def _worse(metrics: Metrics) -> str:
-    found = worse_words(metrics).replace("->", "→").replace(" -", " −")
+    found = PAGE.sentence(worse_words(metrics))
     return f"{found[0].upper()}{found[1:]}." if found else ""
 
 
@@ -67,13 +60,13 @@ def _gain(metrics: Metrics) -> str:
     )
     reductions = {key: metrics.coriolis.reduction(key) for key in keys}
     taken = [
-        f"{percent(value)} off {_NAMES[key]}"
+        f"{PAGE.percent(value)} off {in_sentence(key)}"
         for key, value in reductions.items()
         if value is not None and value >= 0
     ]
     if not taken:
         return "Took nothing off the cross-coupling."
-    return f"Took {_listed(taken)}."
+    return f"Took {listed(taken)}."
 
 
 def _allowed(metrics: Metrics) -> str:
@@ -90,7 +83,7 @@ def _changed(metrics: Metrics) -> str:
             "What the profile asks for beyond the machine's limits is rounded by less than "
             "anybody could notice."
         )
-    whole = percent(metrics.executable.change.joint_change_relative)
+    whole = PAGE.percent(metrics.executable.change.joint_change_relative)
     return (
         "The machine cannot make the motion that the profile asks for: the nearest one inside "
         f"its limits is the desired motion here ({changed}; {whole} of the joint angles)."
@@ -103,15 +96,15 @@ def _felt(metrics: Metrics) -> str:
     turning = metrics.felt.turning.rms
     parts = []
     if rate is not None:
-        parts.append(f"the seat's angular rate is off by {percent(rate)}")
+        parts.append(f"the seat's angular rate is off by {PAGE.percent(rate)}")
     if error is not None:
-        parts.append(f"its G-vector by {plain(error, 3)} g rms")
+        parts.append(f"its G-vector by {PAGE.number(error, 3)} g rms")
     if turning.known is not None:
         parts.append(
-            f"the total angular acceleration is {plain(turning.after, 3)} rad/s² rms, "
-            f"{plain(turning.before, 3)} before"
+            f"the total angular acceleration is {PAGE.number(turning.after, 3)} rad/s² rms, "
+            f"{PAGE.number(turning.before, 3)} before"
         )
-    return f"What the pilot feels of it: {_listed(parts)}." if parts else ""
+    return f"What the pilot feels of it: {listed(parts)}." if parts else ""
 
 
 def _study(metrics: Metrics) -> str:
@@ -119,29 +112,29 @@ def _study(metrics: Metrics) -> str:
     squared = metrics.fidelity.value(JOINT_DEVIATION_SQUARED)
     if cost is None:
         return ""
-    return f"By the study's measure: {percent(cost)} joint deviation ({percent(squared)} squared)."
-
-
-_STUDY = frozenset(each.key for each in COMPONENTS if each.axes == "report")
+    return (
+        f"By the study's measure: {PAGE.percent(cost)} joint deviation "
+        f"({PAGE.percent(squared)} squared)."
+    )
 
 
 def _moved(metrics: Metrics) -> str:
     grown = []
     axes = metrics.solver.axes
-    for key, name in _NAMES.items():
-        if axes == "seat" and key in _STUDY:
+    for component in COMPONENTS:
+        if axes == "seat" and component.axes == "report":
             continue  # the pilot feels none of the study's components by itself
-        reduction = metrics.coriolis.reduction(key)
+        reduction = metrics.coriolis.reduction(component.key)
         if reduction is not None and reduction < -_WORTH_A_WORD:
-            grown.append(f"{name} by {percent(-reduction)}")
+            grown.append(f"{in_sentence(component.key)} by {PAGE.percent(-reduction)}")
     if not grown:
         return ""
-    return f"It was partly moved, not removed: the squared integral grew for {_listed(grown)}."
+    return f"It was partly moved, not removed: the squared integral grew for {listed(grown)}."
 
 
 def _wrong(metrics: Metrics) -> str:
     parts = []
-    status = words(metrics.solver.status)
+    status = text_of(metrics.solver.status)
     if status == "acceptable":
         parts.append(
             "The solver stopped short of its tolerance (acceptable): the motion is verified, "
@@ -160,22 +153,13 @@ def _baselines(metrics: Metrics) -> list[str]:
     constant, sweep = metrics.baseline.constant_p, metrics.baseline.report_sweep
     if constant and constant.p is not None and constant.joint_deviation is not None:
         sentences.append(
-            f"A constant p = {plain(constant.p, 3)} reaches the same reduction at "
-            f"{percent(constant.joint_deviation)} joint deviation."
+            f"A constant p = {PAGE.number(constant.p, 3)} reaches the same reduction at "
+            f"{PAGE.percent(constant.joint_deviation)} joint deviation."
         )
     if sweep and sweep.reduction is not None and sweep.joint_deviation is not None:
         takes, off = ("takes", "off") if sweep.reduction >= 0 else ("adds", "to")
         sentences.append(
-            f"The study's single sweep {takes} {percent(abs(sweep.reduction))} {off} what is "
-            f"weighed, at {percent(sweep.joint_deviation)} joint deviation."
+            f"The study's single sweep {takes} {PAGE.percent(abs(sweep.reduction))} {off} what is "
+            f"weighed, at {PAGE.percent(sweep.joint_deviation)} joint deviation."
         )
     return sentences
-
-
-def _listed(parts: Sequence[str]) -> str:
-    """Join parts as a sentence does.
-
-    >>> _listed(["a"]), _listed(["a", "b"]), _listed(["a", "b", "c"])
-    ('a', 'a and b', 'a, b and c')
-    """
-    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)

@@ -11,7 +11,7 @@ from des_cli.model.machine import JOINTS, Joint
 from des_cli.model.metrics import Driven, JointLoad, Metrics
 from des_cli.results.worse import worse_numbers
 from des_cli.show.page.comparison import Cell
-from des_cli.show.page.numbers import DASH, change, fixed, plain
+from des_cli.show.words import PAGE, axis_name
 
 # Rounding of the solver's last step is no violation.
 _ROUNDING = 1e-9
@@ -29,8 +29,8 @@ def coriolis_rows(metrics: Metrics) -> list[list[Cell]]:
     for component in COMPONENTS:
         part = metrics.coriolis.parts[component.key]
         grew = part.reduction is not None and part.reduction < 0
-        sizes = (Cell(fixed(each, 4)) for each in (*part.sizes.rms, *part.sizes.peak))
-        rows.append([Cell(component.label), Cell(change(part.reduction), _mark(grew)), *sizes])
+        sizes = (Cell(PAGE.fixed(each, 4)) for each in (*part.sizes.rms, *part.sizes.peak))
+        rows.append([Cell(component.label), Cell(PAGE.change(part.reduction), _mark(grew)), *sizes])
     return rows
 
 
@@ -42,10 +42,10 @@ def turning_rows(metrics: Metrics) -> list[list[Cell]]:
         total = sizes is metrics.felt.turning
         bad = (False, total and "turning rms" in worse, False, total and "turning peak" in worse)
         cells = [
-            Cell(fixed(each, 4), _mark(mark))
+            Cell(PAGE.fixed(each, 4), _mark(mark))
             for each, mark in zip((*sizes.rms, *sizes.peak), bad, strict=True)
         ]
-        if any(cell.text != DASH for cell in cells):
+        if any(cell.text != PAGE.unknown for cell in cells):
             rows.append([Cell(name), *cells])
     return rows
 
@@ -66,12 +66,12 @@ def limit_rows(metrics: Metrics) -> list[list[Cell]]:
         for driven, unit in _LIMITED:
             limit = modified.limit(driven)
             peaks = (_peak(load.peak(driven), limit) for load in loads)
-            rows.append([Cell(f"{joint} {driven} [{unit}]"), Cell(plain(limit)), *peaks])
+            rows.append([Cell(f"{joint} {driven} [{unit}]"), Cell(PAGE.number(limit, 4)), *peaks])
         if any(load.rate_step_rad_s for load in loads):
-            steps = (Cell(fixed(load.rate_step_rad_s, 4)) for load in loads)
-            rows.append([Cell(f"{joint} step of the rate [rad/s]"), Cell(DASH), *steps])
-        changes = [plain(load.acceleration_sign_changes) for load in loads]
-        if any(text != DASH for text in changes):
+            steps = (Cell(PAGE.fixed(load.rate_step_rad_s, 4)) for load in loads)
+            rows.append([Cell(f"{joint} step of the rate [rad/s]"), Cell(PAGE.unknown), *steps])
+        changes = [PAGE.number(load.acceleration_sign_changes, 4) for load in loads]
+        if any(text != PAGE.unknown for text in changes):
             label = f"{joint}, sign changes of its acceleration"
             rows.append([Cell(label), Cell(""), *map(Cell, changes)])
         rows.append([Cell(f"{joint}, all limits"), Cell(""), *map(_verdict, loads)])
@@ -80,12 +80,12 @@ def limit_rows(metrics: Metrics) -> list[list[Cell]]:
 
 def _peak(peak: float | None, limit: float | None) -> Cell:
     over = limit is not None and peak is not None and peak > limit * (1 + _ROUNDING)
-    return Cell(f"{fixed(peak, 4)} exceeds", "bad") if over else Cell(fixed(peak, 4))
+    return Cell(f"{PAGE.fixed(peak, 4)} exceeds", "bad") if over else Cell(PAGE.fixed(peak, 4))
 
 
 def _verdict(load: JointLoad) -> Cell:
     """Say whether a joint keeps its limits: also those of the angle, and steps of the rate."""
-    return Cell("broken", "bad") if load.ok is False else Cell("kept" if load.ok else DASH)
+    return Cell("broken", "bad") if load.ok is False else Cell("kept" if load.ok else PAGE.unknown)
 
 
 def joint_rows(metrics: Metrics) -> list[list[Cell]]:
@@ -100,7 +100,7 @@ def joint_rows(metrics: Metrics) -> list[list[Cell]]:
     for joint in JOINTS:
         values = (column.get(joint) for column in columns)
         degrees = (None if value is None else math.degrees(value) for value in values)
-        rows.append([Cell(joint), *(Cell(fixed(value)) for value in degrees)])
+        rows.append([Cell(joint), *(Cell(PAGE.fixed(value)) for value in degrees)])
     return rows
 
 
@@ -114,15 +114,17 @@ def seat_rows(metrics: Metrics) -> list[list[Cell]]:
             Cell(_from_to(sizes.largest)),
             Cell(_from_to(sizes.onset), _mark(f"{axis} onset" in worse)),
             Cell(_from_to(sizes.jump)),
-            Cell(fixed(sizes.rms_error_g)),
+            Cell(PAGE.fixed(sizes.rms_error_g)),
         ]
-        if any(cell.text != DASH for cell in cells):
-            rows.append([Cell(axis.capitalize()), *cells])
+        if any(cell.text != PAGE.unknown for cell in cells):
+            rows.append([Cell(axis_name(axis)), *cells])
     return rows
 
 
 def _from_to(pair: BeforeAfter) -> str:
-    return DASH if pair.known is None else f"{fixed(pair.before)} → {fixed(pair.after)}"
+    if pair.known is None:
+        return PAGE.unknown
+    return f"{PAGE.fixed(pair.before)} {PAGE.arrow} {PAGE.fixed(pair.after)}"
 
 
 def _mark(bad: bool) -> str:

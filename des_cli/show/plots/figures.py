@@ -39,6 +39,7 @@ from des_cli.show.plots.canvas import (
 from des_cli.show.plots.ride import felt, limits
 from des_cli.show.plots.standing import budget_words, change_words, status_words
 from des_cli.show.plots.weighted import weighted_component
+from des_cli.show.words import FIGURE
 from des_cli.units import split_unit
 
 Columns: TypeAlias = Mapping[str, Floats]
@@ -230,5 +231,4 @@ def _share_taken_off(metrics: Metrics, key: ComponentKey) -> str:
     reduction = metrics.coriolis.reduction(key)
     if reduction is None:
         return ""
-    sign = "−" if reduction >= 0 else "+"
-    return f"squared integral {sign}{100 * abs(reduction):.1f} %"
+    return f"squared integral {FIGURE.change(reduction)}"

@@ -13,6 +13,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS
 from des_cli.model.metrics import Driven, Metrics
 from des_cli.show.plots.canvas import AFTER, BEFORE, DESIRED, MODIFIED, Pen, draw, note, sheet
+from des_cli.show.words import FIGURE
 
 Columns: TypeAlias = Mapping[str, Floats]
 
@@ -97,10 +98,10 @@ def _shade(panel: Axes, bound: float | None, values: list[Floats]) -> None:
 def _standing(name: str, bound: float | None, peak: float | None, unit: str) -> str:
     if bound is None:
         return f"{name}: no limit"
-    used = f", peak at {100 * peak / bound:.0f} %" if peak is not None and bound > 0.0 else ""
+    used = f", peak at {FIGURE.percent(peak / bound)}" if peak is not None and bound > 0.0 else ""
     return f"{name}: limit ±{bound:.3g} {unit}{used}"
 
 
 def _size(metrics: Metrics) -> str:
-    rms = metrics.felt.turning.rms
-    return "" if rms.known is None else f"rms {rms.before:.3g} → {rms.after:.3g} rad/s²"
+    rms = FIGURE.from_to(metrics.felt.turning.rms)
+    return f"rms {rms} rad/s²" if rms else ""

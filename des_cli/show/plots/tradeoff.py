@@ -30,6 +30,7 @@ from des_cli.show.plots.canvas import (
     sheet,
     style,
 )
+from des_cli.units import percent
 
 FREE = Pen("free", GREEN, (0, (2.5, 1.2)), marker="D")
 PER_JOINT = Pen("per joint", BLUE, marker="o")
@@ -231,4 +232,4 @@ def _name(point: TradePoint) -> str:
         return f"{point.value:g} rad/s²"
     if point.swept.endswith("_g"):
         return f"{point.value:g} g"
-    return f"{100.0 * point.value:g} %"
+    return percent(point.value, 6)

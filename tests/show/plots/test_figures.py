@@ -126,7 +126,7 @@ def panel_of_limits(peak: float, limit: float | None) -> Any:
 
 @pytest.mark.parametrize(
     ("peak", "words", "near"),
-    [(0.6, "peak at 95 %", True), (0.9, "peak at 143 %", True), (0.01, "peak at 2 %", False)],
+    [(0.6, "peak at 95.2 %", True), (0.9, "peak at 143 %", True), (0.01, "peak at 1.6 %", False)],
 )
 def test_a_limit_is_shaded_and_on_the_paper_where_it_is_near(
     peak: float, words: str, near: bool
