@@ -150,6 +150,14 @@ class Fidelity:
 
 
 @dataclass(frozen=True, slots=True)
+class Added:
+    """What the reduction adds to a motion that budgets hold round, which is not the record."""
+
+    budgets: Mapping[str, float | None] = field(default_factory=dict)
+    felt: Felt = field(default_factory=Felt)
+
+
+@dataclass(frozen=True, slots=True)
 class Change:
     """What one step from the record to the motion that is reduced cost."""
 
@@ -278,6 +286,7 @@ class Metrics:
     asked_g: AskedG | None = None
     coriolis: CrossCoupling = field(default_factory=CrossCoupling)
     fidelity: Fidelity = field(default_factory=Fidelity)
+    added: Added | None = None
     felt: Felt = field(default_factory=Felt)
     changes: Changes = field(default_factory=Changes)
     executable: Executable = field(default_factory=Executable)
@@ -286,6 +295,11 @@ class Metrics:
     singularity: Singularity = field(default_factory=Singularity)
     violations: tuple[str, ...] = ()
     notices: tuple[str, ...] = ()
+
+    @property
+    def ride(self) -> Felt:
+        """What is felt, beside the ride that was reduced: the noise of a record is no ride."""
+        return self.added.felt if self.added else self.felt
 
     def mapping(self) -> dict[str, Any]:
         """Return the content of ``metrics.json``, a new one each time."""

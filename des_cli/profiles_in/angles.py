@@ -17,6 +17,12 @@ NEAR_A_TURN = TURN / 8.0
 FAST = TURN / 4.0
 """Usual change from row to row from which a jump cannot be told from the motion."""
 
+SUDDEN = TURN
+"""Rate [rad/s] that a step takes which is a jump of the numbers: a turn a second."""
+
+ALONE = 10.0
+"""How many times as long as the steps on either side such a step is."""
+
 LEAST_STEPS = 3
 """Steps of a record up to which nothing is usual."""
 
@@ -70,3 +76,21 @@ def unwrap(angle: Floats) -> Unwrapped:
     smooth[1:] -= np.cumsum(turns)
     jumps, doubtful = (np.flatnonzero(each).tolist() for each in (jumping & ~unclear, unclear))
     return Unwrapped(smooth, jumps, doubtful)
+
+
+def sudden_steps(t: Floats, angle: Floats) -> list[int]:
+    """Return the rows before each step that stands alone and that no joint follows.
+
+    Parameters
+    ----------
+    t : (n,) array
+        Increasing times, n >= 2 [s].
+    angle : (n,) array
+        Without jumps by full turns [rad].
+    """
+    step = np.abs(np.diff(angle))
+    if len(step) < LEAST_STEPS:
+        return []
+    beside = np.maximum(np.append(step[1:], 0.0), np.insert(step[:-1], 0, 0.0))
+    sudden = (step > SUDDEN * np.diff(t)) & (step > ALONE * beside)
+    return [int(row) for row in np.flatnonzero(sudden)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from des_cli.errors import Complaint
+from des_cli.profiles_in.clock import is_clock
 from des_cli.profiles_in.column_kinds import (
     ASKED_G,
     BODY_RATES,
@@ -17,7 +18,7 @@ from des_cli.profiles_in.column_kinds import (
 )
 from des_cli.profiles_in.csv_header import Header
 from des_cli.profiles_in.unit_spelling import read_name
-from des_cli.profiles_in.wording import did_you_mean, one_of, plain
+from des_cli.profiles_in.wording import did_you_mean, one_of, option, plain
 
 _ARTICLE = {"rate": "a rate", "angle": "an angle", "time": "a time", "specific_force": "a G"}
 _SIGNS = {"rad_s": "rad/s", "deg_s": "deg/s"}
@@ -55,8 +56,12 @@ def check_missing(
             continue
         words = [unusable(column) for column in own] or misspelt(header, stem)
         if not words:
-            lost = True
             words = [f"a column is missing: {one_of(spelled(stem))}"]
+            clocks = _clocks(header) if stem == "t" else []
+            if clocks:
+                form = option("--column", f"t={clocks[0]}")
+                words = [f"{words[0]}; {plain(clocks[0])} holds times of day: {form} reads them"]
+            lost = lost or not clocks
         complaints += [Complaint(header.where, each) for each in words]
     unknown = [
         name
@@ -67,6 +72,12 @@ def check_missing(
         are = "column is" if len(unknown) == 1 else "columns are"
         what = f"{len(unknown)} {are} not known: {some(unknown)}; {_HOW_TO_NAME}"
         complaints.append(Complaint(header.where, what))
+
+
+def _clocks(header: Header) -> list[str]:
+    """Return the names of columns that start with a time of day or a date."""
+    cells = zip(header.names, header.first, strict=False)
+    return [name for name, cell in cells if name and is_clock(cell)]
 
 
 def _needed(header: Header, kind: Kind, found: Sequence[Column]) -> Sequence[str]:
@@ -115,8 +126,13 @@ def repeated(stem: str, same: Sequence[Column]) -> str:
     """Say that several columns of one rank give the same quantity."""
     names = [plain(column.in_file) for column in same]
     if len(set(names)) == 1:
-        return f"the column {names[0]} stands {len(names)} times"
+        return stands_often(names[0], len(names))
     return f"{stem} is given twice: {' and '.join(names)}; choose one with --column"
+
+
+def stands_often(name: str, count: int) -> str:
+    """Say that a header has a name more than once, between which no option can choose."""
+    return f"the column {plain(name)} stands {count} times; rename all but one in the file's header"
 
 
 def some(names: Sequence[str], most: int = 12) -> str:

@@ -13,6 +13,7 @@ from des_cli.profiles_in.column_complaints import (
     repeated,
     several_kinds,
     some,
+    stands_often,
     unusable,
 )
 from des_cli.profiles_in.column_kinds import (
@@ -116,7 +117,7 @@ def _named(
             complaints.append(Complaint(where, f"the file has no column {plain(in_file)}{hint}"))
             continue
         if count > 1:
-            complaints.append(Complaint(where, f"the column {plain(in_file)} stands {count} times"))
+            complaints.append(Complaint(where, stands_often(in_file, count)))
         elif list(named.values()).count(in_file) > 1:
             complaints.append(Complaint(where, f"the column {plain(in_file)} is named twice"))
         if own.stem not in QUANTITIES:

@@ -17,6 +17,7 @@ from des_cli.errors import Complaint, ProfileError
 from des_cli.kinematics.attitude import quaternion_product
 from des_cli.kinematics.smoothing import why_not_smooth
 from des_cli.model.arrays import Floats, Indices
+from des_cli.model.profile import WASHOUT, GCommand
 from des_cli.profiles_in.attitude import interpolate_attitude
 from des_cli.profiles_in.column_kinds import QUATERNION, RATES
 from des_cli.profiles_in.conditioning_schema import EulerOrder
@@ -47,6 +48,8 @@ class Conditioning:
         Of the smoothing before the reduction [Hz].
     euler : str, optional
         Order of recorded roll, pitch and yaw.
+    washout : float
+        Of the rates beside a recorded G [s].
     """
 
     start: float = -math.inf
@@ -55,6 +58,7 @@ class Conditioning:
     step: float = 0.0
     cutoff_hz: float = math.inf
     euler: EulerOrder | None = None
+    washout: float = WASHOUT
 
 
 def read_conditioning(document: Any, findings: Findings) -> Conditioning:
@@ -77,6 +81,7 @@ def read_conditioning(document: Any, findings: Findings) -> Conditioning:
         values["cutoff_hz"] = document.smooth.cutoff_hz
     if document.samples is not None:
         values["euler"] = document.samples.euler
+        values["washout"] = document.samples.si("washout", WASHOUT)
     return Conditioning(**values)
 
 
@@ -102,6 +107,15 @@ def check_smoothing(conditioning: Conditioning, t: Floats, findings: Findings) -
         return
     if trouble := why_not_smooth(t, conditioning.cutoff_hz):
         findings.add(["smooth", "cutoff_hz"], trouble)
+
+
+def check_washout(section: Any, command: Any, findings: Findings) -> None:
+    """Say that a washout time below ``samples:`` has no rates that it could wash out."""
+    key = section.given_key("washout") if section is not None else None
+    if key is None or (isinstance(command, GCommand) and command.rates is not None):
+        return
+    what = "washes out nothing: the samples are no G with p or q beside it; leave this out"
+    findings.add(["samples", key], what, of_key=True)
 
 
 def refuse_beside_expressions(present: Mapping[str, Any], name: str, findings: Findings) -> None:
@@ -188,7 +202,8 @@ def resampled(
     """Return a record on a uniform grid from its first time on.
 
     Rates and positions by the shape-preserving cubic (PCHIP), an attitude by
-    the rotation spline. The grid ends with the last step inside the record.
+    the rotation spline, an asked G and what stands beside it by the straight lines
+    that its rows mean. The grid ends with the last step inside the record.
 
     Parameters
     ----------
@@ -208,7 +223,9 @@ def resampled(
     grid = _uniform(t, conditioning.step, label)
     others = [stem for stem in record if stem not in ("t", *QUATERNION)]
     found = {"t": grid}
-    if others:
+    if set(G_STEMS) & set(record):
+        found |= {stem: np.interp(grid, t, record[stem]) for stem in others}
+    elif others:
         from scipy.interpolate import PchipInterpolator
 
         # Times from the first one: late starts must not cost digits.

@@ -20,11 +20,17 @@ from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.profiles_in.clock import is_clock
 from des_cli.profiles_in.csv_header import Header, is_comment
+from des_cli.profiles_in.gaps import LONGEST_BRIDGED
 from des_cli.profiles_in.sampling import MAX_SAMPLES
 from des_cli.profiles_in.wording import plain, shown
 
 _WORTH_TELLING = 30
 """Kinds of wrong rows described before the rest is only counted."""
+
+_LEFT_OUT = (
+    f"take out the rows without a number: a gap of up to {LONGEST_BRIDGED:g} s is then bridged, "
+    "and --gap (or gap) says what is done about a longer one"
+)
 
 
 @dataclass(frozen=True)
@@ -252,9 +258,9 @@ def _cell_checker(header: Header) -> Callable[[int, str], str]:
     def complaint(place: int, cell: str) -> str:
         name, cell = plain(header.names[place]), cell.strip()
         if not cell:
-            return f"{name}: is missing"
+            return f"{name}: is missing; {_LEFT_OUT}"
         if cell.lower() == "nan":
-            return f"{name}: is nan"
+            return f"{name}: is nan; {_LEFT_OUT}"
         if header.dialect.is_number(cell):
             return f"{name}: {shown(cell)} is too large for a number"
         hint = ""

@@ -117,7 +117,9 @@ def onset_pieces(onsets: Sequence[Onset], start: float, stop: float) -> tuple[Pi
     return tuple(pieces)
 
 
-def sampled_g(t: Floats, columns: Mapping[str, Floats]) -> tuple[Floats, GCommand]:
+def sampled_g(
+    t: Floats, columns: Mapping[str, Floats], washout: float = WASHOUT
+) -> tuple[Floats, GCommand]:
     """Return the command of recorded samples, straight lines between them.
 
     Parameters
@@ -126,6 +128,8 @@ def sampled_g(t: Floats, columns: Mapping[str, Floats]) -> tuple[Floats, GComman
         [s]
     columns : mapping of str to (n,) array
         ``gx``, ``gy``, ``gz`` [m/s^2] and ``p``, ``q`` [rad/s]; what is not there is zero.
+    washout : float
+        Time constant with which the rates are washed out [s].
 
     Returns
     -------
@@ -147,7 +151,7 @@ def sampled_g(t: Floats, columns: Mapping[str, Floats]) -> tuple[Floats, GComman
     if any(stem in columns for stem in RATE_STEMS):
         turning = filled((*RATE_STEMS, "r"), 1.0)
         rates = BodyRates(turning[:-1], 0.5 * (turning[:-1] + turning[1:]), turning[1:])
-    return fine, GCommand(asked[:-1], asked[1:], rates)
+    return fine, GCommand(asked[:-1], asked[1:], rates, washout)
 
 
 def _check_whole(section: Section, given: Mapping[str, Any], findings: Findings) -> None:

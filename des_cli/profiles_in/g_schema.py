@@ -18,6 +18,8 @@ NotNegative = Annotated[Number, Field(ge=0, le=1e12)]
 Positive = Annotated[Number, Field(gt=0, le=1e12)]
 GValue = Annotated[Number, Field(ge=-MOST_G, le=MOST_G)]
 
+WASHOUT_TIME = Measure("washout", "time", "the washout time of the rates", required=False)
+
 _WORDS = (
     "a number, an expression in t, a list of segments {from_s, to_s, value}, or a list of onsets "
     "{hold_g, hold_s}, {to_g, onset_g_s, hold_s}"
@@ -88,17 +90,17 @@ def g_section(kinds: Any, command: Any) -> type[Section]:
             custom_error_context={"words": f"must be {_WORDS}"},
         ),
     ]
-    washout = Measure("washout", "time", "the washout time of the rates", required=False)
     fields: dict[str, Any] = {
         f"{stem}_g": (component, Field(default=OMITTED, description=f"asked G{stem[1]}"))
         for stem in G_STEMS
     }
     fields |= {
-        key: (Positive, Field(default=OMITTED, description=washout.title)) for key in washout.keys
+        key: (Positive, Field(default=OMITTED, description=WASHOUT_TIME.title))
+        for key in WASHOUT_TIME.keys
     }
     rates = (
         Measure("p", "rate", "the roll rate p", required=False),
         Measure("q", "rate", "the pitch rate q", required=False),
     )
     doc = "The G-vector that the pilot is to feel, in his signs, and perhaps rates beside it."
-    return measured("G", doc, (*rates, washout), command, **fields)
+    return measured("G", doc, (*rates, WASHOUT_TIME), command, **fields)

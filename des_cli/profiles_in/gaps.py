@@ -53,7 +53,9 @@ class GapHandling:
     parts: int = 1
 
 
-def find_short_steps(t: Floats, label: str, line: Place) -> list[Complaint]:
+def find_short_steps(
+    t: Floats, label: str, line: Place, *, drawn_every: float = np.inf
+) -> list[Complaint]:
     """Say which rows follow another one within hardly any time.
 
     Parameters
@@ -64,16 +66,26 @@ def find_short_steps(t: Floats, label: str, line: Place) -> list[Complaint]:
         What messages call the file.
     line : callable
         From a row to its line.
+    drawn_every : float
+        Longest step of what is drawn between the rows [s], where these are corners of
+        straight lines and no sampling; infinite where they are.
     """
     step = np.diff(t)
-    median = float(np.median(step))
-    rows = np.flatnonzero(step < SHORTEST_PER_MEDIAN * median).tolist()
+    usual = min(float(np.median(step)), drawn_every)
+    rows = np.flatnonzero(step < SHORTEST_PER_MEDIAN * usual).tolist()
+
+    def cure(row: int) -> str:
+        held = t[row] + usual
+        if usual < drawn_every or (row + 2 < len(t) and t[row + 2] <= held):
+            return "remove one of the two rows"
+        return f"for a step there, move this row to t = {held:.12g} s; else remove one of the two"
+
     return _bounded(
         [
             Complaint(
                 f"{label}:{line(row + 1)}",
                 f"follows the row before it within {step[row]:.3g} s, from t = {t[row]:.12g} to "
-                f"{t[row + 1]:.12g} s, where {median:.4g} s are usual; remove one of the two rows",
+                f"{t[row + 1]:.12g} s, where {usual:.4g} s are usual; {cure(row)}",
             )
             for row in rows
         ],
@@ -82,7 +94,13 @@ def find_short_steps(t: Floats, label: str, line: Place) -> list[Complaint]:
 
 
 def select_rows(
-    t: Floats, label: str, line: Place, handling: GapHandling, remarks: list[str]
+    t: Floats,
+    label: str,
+    line: Place,
+    handling: GapHandling,
+    remarks: list[str],
+    *,
+    straight: bool = False,
 ) -> slice:
     """Return the rows that are read as one motion: all, or a stretch between gaps.
 
@@ -96,13 +114,16 @@ def select_rows(
         Its ``parts`` are set.
     remarks : list of str
         Takes a sentence for every gap that was bridged and every stretch left out.
+    straight : bool
+        Whether the rows are corners of straight lines: then a long step is a long line,
+        and a gap only where the user asks for gaps.
 
     Raises
     ------
     ProfileError
         Naming each gap that is refused, or where no such part exists.
     """
-    gaps = find_gaps(t)
+    gaps = [] if straight and handling.policy is None else find_gaps(t)
     if handling.policy == "split":
         return _part(t, label, line, gaps, handling, remarks)
     bridged = handling.policy == "bridge"

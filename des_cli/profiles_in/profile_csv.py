@@ -9,21 +9,24 @@ import numpy as np
 from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, GCommand, JointCommands
-from des_cli.profiles_in.angles import unwrap
+from des_cli.profiles_in.angles import sudden_steps, unwrap
 from des_cli.profiles_in.attitude import flown_attitude, rows_with_attitude, with_quaternions
 from des_cli.profiles_in.column_kinds import EULER, JOINTS, QUATERNION, RATES, Column
 from des_cli.profiles_in.columns import choose_columns
 from des_cli.profiles_in.conditioning import Conditioning, in_seat_axes, resampled, rows_inside
 from des_cli.profiles_in.csv_header import Header, comment_lines, split_header
 from des_cli.profiles_in.csv_table import Rows, read_columns
-from des_cli.profiles_in.g_commands import sampled_g
+from des_cli.profiles_in.g_commands import STEP, sampled_g
 from des_cli.profiles_in.g_schema import G_STEMS
 from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
 from des_cli.profiles_in.interpolant import body_rates_of_samples
 from des_cli.profiles_in.positions import joint_commands_of_samples
-from des_cli.profiles_in.sample_times import SampleTimes, sample_times
-from des_cli.profiles_in.sampling import MAX_MAGNITUDE
+from des_cli.profiles_in.record_checks import check_magnitudes, check_times, tell_doubtful_units
+from des_cli.profiles_in.sample_times import sample_times
 from des_cli.profiles_in.wording import plain
+
+_TOLD = 20
+"""Jumps described."""
 
 
 def parse_samples(
@@ -89,7 +92,9 @@ def parse_samples(
 
     by_stem = {stem: column[rows] for stem, column in by_stem.items()}
     by_stem = with_quaternions(by_stem, conditioning.euler, header, line, complaints)
-    complaints += find_short_steps(by_stem["t"], label, line)
+    by_lines = any(stem in by_stem for stem in G_STEMS)
+    drawn_every = STEP if by_lines else np.inf
+    complaints += find_short_steps(by_stem["t"], label, line, drawn_every=drawn_every)
     said = []
     for column in chosen:
         if column.stem in JOINTS and column.unit and column.unit.quantity == "angle":
@@ -102,15 +107,16 @@ def parse_samples(
         kept = rows_with_attitude(by_stem, label, remarks)
         by_stem = {stem: column[kept] for stem, column in by_stem.items()}
         rows = rows[kept]
-    stretch = select_rows(by_stem["t"], label, line, gaps or GapHandling(), said)
+    gaps = gaps or GapHandling()
+    stretch = select_rows(by_stem["t"], label, line, gaps, said, straight=by_lines)
     remarks += said
     by_stem = {stem: column[stretch] for stem, column in by_stem.items()}
     by_stem = resampled(by_stem, conditioning, label, remarks)
     if flies_attitude:
         return flown_attitude(by_stem, remarks)
     t = by_stem["t"]
-    if any(stem in by_stem for stem in G_STEMS):
-        return sampled_g(t, by_stem)
+    if by_lines:
+        return sampled_g(t, by_stem, conditioning.washout)
     if "arm" in by_stem:
         arm = next(column for column in chosen if column.stem == "arm")
         return t, joint_commands_of_samples(
@@ -141,8 +147,9 @@ def _read(
     times = sample_times(header, time, recorded, rows, complaints, remarks)
     if times is not None:
         by_stem["t"] = times.t
-        _check_times(header, time, times, rows, complaints)
-    _check_magnitudes(header, chosen, by_stem, rows, complaints)
+        check_times(header, time, times, rows, complaints)
+    check_magnitudes(header, chosen, by_stem, rows, complaints)
+    tell_doubtful_units(chosen, by_stem, remarks)
     return rows, by_stem
 
 
@@ -178,43 +185,10 @@ def _unwrapped(
             f"line {line(row + 1)}: {name} jumps {jump(row)}{others}; "
             "the angle wraps there, and full turns were added so that it goes on"
         )
-    return found.angle
-
-
-def _check_times(
-    header: Header, column: Column, times: SampleTimes, rows: Rows, complaints: list[Complaint]
-) -> None:
-    if len(times.t) < 2:
-        what = "has one row; a motion needs two or more"
-        complaints.append(Complaint(header.label, what))
-        return
-    late = np.flatnonzero(~(np.diff(times.t) > 0))
-    name = plain(column.in_file)
-    for index in late[:20].tolist():
-        complaints.append(
-            Complaint(
-                f"{header.label}:{rows.lines[index + 1]}",
-                f"{name}: {times.written(index + 1)} does not increase "
-                f"(previous {times.written(index)})",
-            )
+    for row in [] if found.unclear else sudden_steps(by_stem["t"], found.angle)[:_TOLD]:
+        time = f"t = {by_stem['t'][row + 1]:.12g} s"
+        remarks.append(
+            f"line {line(row + 1)}: {name} jumps {jump(row)} at {time}, which no joint follows: "
+            "mend the record, or --trim it to one side"
         )
-    if len(late) > 20:
-        complaints.append(Complaint(header.label, f"… and {len(late) - 20} more times like these"))
-
-
-def _check_magnitudes(
-    header: Header,
-    chosen: list[Column],
-    by_stem: Mapping[str, Floats],
-    rows: Rows,
-    complaints: list[Complaint],
-) -> None:
-    """Say where a command is beyond any machine."""
-    for column in chosen:
-        if column.stem == "t" or column.unit is None:
-            continue
-        wrong = np.flatnonzero(np.abs(by_stem[column.stem]) > MAX_MAGNITUDE)
-        if len(wrong):
-            place = f"{header.label}:{rows.lines[int(wrong[0])]}"
-            what = f"is beyond {MAX_MAGNITUDE:g} rad or rad/s ({len(wrong)} such cells)"
-            complaints.append(Complaint(place, f"{plain(column.in_file)}: {what}"))
+    return found.angle

@@ -19,6 +19,7 @@ from des_cli.profiles_in.commands import check_commands, read_commands, read_tim
 from des_cli.profiles_in.conditioning import (
     Conditioning,
     check_smoothing,
+    check_washout,
     read_conditioning,
     refuse_beside_expressions,
 )
@@ -173,6 +174,7 @@ def finish(
         unread = error if unread is None else ProfileError([*unread.complaints, *error.complaints])
     if commands is not None:
         check_smoothing(reading.conditioning, commands[0], findings)
+        check_washout(document.samples, commands[1], findings)
     reduction = read_reduction(document.reduction, findings)
     initial = read_initial(document.initial, commands, findings)
     if unread is not None and findings.complaints:
@@ -184,6 +186,7 @@ def finish(
     assert commands is not None, "otherwise something was found"
     if reading.gaps.parts > 1:
         name = f"{document.name or name}-{reading.gaps.part}"
+        reading.remarks += later_start(reading.gaps, commands, initial)
     else:
         name = document.name or name
     return Profile(
@@ -236,6 +239,30 @@ def read_initial(section: Any, commands: Commands | None, findings: Findings) ->
     if commands is not None and isinstance(commands[1], JointCommands):
         given[1:] = commands[1].position[0].tolist()
     return np.array(given)
+
+
+def later_start(handling: GapHandling, commands: Commands, initial: Floats) -> list[str]:
+    """Return a remark on where a later stretch of body rates starts, which no row tells.
+
+    Parameters
+    ----------
+    handling : GapHandling
+        Of a record that gaps split.
+    commands : tuple
+        Times and commands of the stretch.
+    initial : (3,) array
+        Joint angles at its first sample [rad].
+    """
+    t, command = commands
+    if not isinstance(command, BodyRates) or handling.part in (None, 1):
+        return []
+    angles = zip(JOINTS, np.degrees(initial), strict=True)
+    start = ", ".join(f"{joint} {angle:.6g}" for joint, angle in angles)
+    return [
+        f"part {handling.part} starts from the profile's initial angles, {start} deg, as every "
+        f"part does: where the machine stood otherwise, read this part alone by --trim "
+        f"{t[0]:.12g}:{t[-1]:.12g} (or trim) with initial angles of its own"
+    ]
 
 
 def document_commands(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from typing import Annotated, Any, Literal
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
@@ -31,7 +31,7 @@ from des_cli.profiles_in.conditioning_schema import (
 )
 from des_cli.profiles_in.dialect import parse_decimal, parse_separator
 from des_cli.profiles_in.expression import Expression, ExpressionError, parse_expression
-from des_cli.profiles_in.g_schema import g_section
+from des_cli.profiles_in.g_schema import WASHOUT_TIME, g_section
 from des_cli.profiles_in.gaps import GapPolicy
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE, MachineSection
 from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault, measured
@@ -199,15 +199,24 @@ Decimal = Annotated[
 ]
 
 
-class SamplesReading(Section):
-    """How the samples of a CSV file are read."""
+class SamplesReadingBase(Section):
+    """Keys of how samples are read that have no unit."""
 
     euler: EulerOrder = OMITTED
     separator: Separator = OMITTED
     decimal: Decimal = OMITTED
 
 
-class Samples(SamplesReading):
+SamplesReading = measured(
+    "SamplesReading",
+    "How the samples of a CSV file are read.",
+    (WASHOUT_TIME,),
+    Annotated[Number, Field(gt=0, le=1e12)],
+    base=SamplesReadingBase,
+)
+
+
+class Samples(SamplesReading):  # type: ignore[misc, valid-type]
     """Commands recorded in a CSV file beside the profile."""
 
     file: Annotated[str, Field(strict=True, min_length=1)]
@@ -327,11 +336,15 @@ MachineChoice = Annotated[
 class ProfileSettings(Section):
     """What a profile says beside its commands."""
 
+    elsewhere: ClassVar[Mapping[str, str]] = {
+        "g": "is for profiles in YAML; what belongs to a recorded G, such as washout_s, is below "
+        "samples"
+    }
     name: Annotated[str, Field(strict=True), AfterValidator(_check_name)] = OMITTED
     machine: MachineChoice = DEFAULT_MACHINE
     seat: Seat = OMITTED  # type: ignore[valid-type]
     initial: Initial = OMITTED  # type: ignore[valid-type]
-    samples: SamplesReading = OMITTED
+    samples: SamplesReading = OMITTED  # type: ignore[valid-type]
     gap: GapPolicy = OMITTED
     trim: Trim = OMITTED  # type: ignore[valid-type]
     axes: BodyAxes = OMITTED

@@ -7,7 +7,7 @@ and exactly one of them may be given.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
@@ -86,6 +86,8 @@ class Section(BaseModel):
         extra="forbid", frozen=True, arbitrary_types_allowed=True, protected_namespaces=()
     )
     measures: ClassVar[tuple[Measure, ...]] = ()
+    elsewhere: ClassVar[Mapping[str, str]] = {}
+    """Keys that belong to another place, with what is said of them here."""
 
     @classmethod
     def keys(cls) -> list[str]:
@@ -193,7 +195,9 @@ def _unknown_keys(section: type[Section], data: dict[str, Any]) -> Iterable[tupl
         if key in section.model_fields:
             continue
         match = [measure for measure in section.measures if _tries(key, measure)]
-        if match:
+        if key in section.elsewhere:
+            yield key, section.elsewhere[key]
+        elif match:
             yield key, f"{match[0].title} needs its unit in the key: {one_of(match[0].keys)}"
         else:
             hint = did_you_mean(key, section.keys())

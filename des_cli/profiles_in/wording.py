@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import shlex
 from collections.abc import Iterable, Sequence
 
 _SHOWN_LENGTH = 60
@@ -29,6 +30,15 @@ def plain(name: str) -> str:
     """
     fits = name.isprintable() and 0 < len(name) <= _SHOWN_LENGTH
     return name if fits else shown(name)
+
+
+def option(name: str, value: str) -> str:
+    """Write an option as a shell takes it.
+
+    >>> option("--column", "t=UTC"), option("--column", "t=UTC time")
+    ('--column t=UTC', "--column 't=UTC time'")
+    """
+    return f"{name} {shlex.quote(plain(value))}"
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

@@ -23,6 +23,7 @@ from des_cli.model.metric import (
     SEAT_G_DEVIATION,
     SEAT_G_ERROR,
     SEAT_RATE_DEVIATION,
+    UNFELT_ANGULAR_ACCELERATION,
     MetricKey,
 )
 from des_cli.model.motion import Motion, Shortfall, integrate_sides
@@ -112,13 +113,13 @@ class Deviation:
 
     def _turning_rms_ratio(self) -> float:
         before, after = (self._rms(turning) for turning in self._turning)
-        return after / max(before, 1e-150)
+        return after / max(before, UNFELT_ANGULAR_ACCELERATION)
 
     def _turning_peak_ratio(self) -> float:
         before, after = (
             float(np.max(np.linalg.norm(turning, axis=-1))) for turning in self._turning
         )
-        return after / max(before, 1e-150)
+        return after / max(before, UNFELT_ANGULAR_ACCELERATION)
 
     def _attitude(self) -> float:
         motions = (self.reference, self.modified)

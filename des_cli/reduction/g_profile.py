@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from des_cli.errors import Complaint, UsageError
+from des_cli.errors import Complaint, NotReleasedError, UsageError
 from des_cli.kinematics.chain import Chain, chain_of
 from des_cli.kinematics.g_motion import (
     NO_G,
@@ -30,9 +30,11 @@ from des_cli.kinematics.twist import SeatForms, seat_forms
 from des_cli.kinematics.washout import seen_turned, washed_rotation
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Joint, JointLimits, Machine
+from des_cli.model.metric import SEAT_G_DEVIATION
 from des_cli.model.motion import DesiredMotion, GOffset, Motion, Shortfall, integrate_sides
 from des_cli.model.profile import GCommand, Profile
 from des_cli.model.response import Response
+from des_cli.reduction.change import allowed_change
 from des_cli.reduction.executable import (
     CLEAR,
     ExecutableSpline,
@@ -111,6 +113,36 @@ def follow_g(profile: Profile, command: GCommand) -> DesiredMotion:
         shortfall=_shortfall(command, response),
         g_offset=measure_offset(profile.t, command, response),
     )
+
+
+def require_makeable(profile: Profile) -> None:
+    """Refuse a G that is nowhere as large as gravity, which no centrifuge takes away.
+
+    Its nearest is a machine that stands still: nothing to reduce, and to tell a share of it
+    that is changed says little where next to nothing is asked.
+
+    Raises
+    ------
+    NotReleasedError
+        If more of the asked G would be changed than the profile allows.
+    """
+    if not isinstance(profile.command, GCommand):
+        return
+    size = np.linalg.norm(profile.command.sides, axis=-1)
+    gravity, most = profile.machine.gravity / STANDARD_GRAVITY_M_S2, float(np.max(size))
+    if most >= gravity:
+        return
+    nothing = most <= NO_G
+    allowed = allowed_change(profile.reduction, SEAT_G_DEVIATION)
+    # The nearest that can be made is gravity itself, in the asked direction.
+    if not nothing and _rms(profile.t, gravity - size) <= allowed * _rms(profile.t, size):
+        return
+    asks = "asks for no G at all" if nothing else f"asks for {most:.3g} g at most"
+    what = (
+        f"{asks}, and no centrifuge makes less than {gravity:.3g} g for long: standing still it "
+        f"makes that; ask for {gravity:.3g} g or more"
+    )
+    raise NotReleasedError([Complaint(profile.name, what)])
 
 
 def _shortfall(command: GCommand, response: Response) -> Shortfall:

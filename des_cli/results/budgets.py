@@ -59,8 +59,9 @@ def spent_budgets(metrics: Metrics) -> list[Spent]:
     G error 0.049 of 0.05 g
     """
     found = []
+    values = metrics.added.budgets if metrics.added else metrics.fidelity.metrics
     for key, most in (metrics.solver.budget or {}).items():
-        spent = metrics.fidelity.metrics.get(key)
+        spent = values.get(key)
         if spent is None:
             continue
         metric = metric_named(key)

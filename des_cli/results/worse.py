@@ -1,4 +1,4 @@
-"""What of the ride got worse than the record: the first thing that a pilot should know.
+"""What of the ride got worse by the reduction: the first thing that a pilot should know.
 
 Taking the cross-coupling off is no gain if hard joint accelerations turn the seat
 more than the cross-coupling did. Each measure has a threshold below which nobody
@@ -12,9 +12,14 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, TypeAlias
 
-from des_cli.model.felt import G_AXES, BeforeAfter, GAxis
+from des_cli.model.felt import G_AXES, BeforeAfter, Felt, GAxis
 from des_cli.model.machine import JOINTS
-from des_cli.model.metric import ANGULAR_ACCELERATION_PEAK_RATIO, ANGULAR_ACCELERATION_RMS_RATIO
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_PEAK_RATIO,
+    ANGULAR_ACCELERATION_RMS_RATIO,
+    SEAT_G_ERROR,
+    UNFELT_ANGULAR_ACCELERATION,
+)
 from des_cli.model.metrics import Metrics
 
 SHARE = 0.05
@@ -23,10 +28,6 @@ a twentieth is what two runs of one maneuver may differ by on a machine."""
 
 PEAK_SHARE = 0.1
 """The same of the total angular acceleration's peak: one instant says less than a mean."""
-
-LEAST_ANGULAR_ACCELERATION = 0.01
-"""Growth of it [rad/s^2] that is never told: about half a degree per second squared, at
-the threshold of the semicircular canals."""
 
 LEAST_GY = 0.1
 """Growth of the sideways G's peak [g] that is told: it leans a 1 g pilot by six degrees."""
@@ -41,6 +42,8 @@ under the 1.5 to 2 degrees per second at which a turn is noticed (Benson 1989)."
 LEAST_START_ANGLE = 0.01
 """Difference of a joint's angle at the start [rad] that is told, of a joint whose start
 is not among the constants to be found: half a degree, more than rounding by far."""
+
+_SMALLER = f"a smaller budget on {SEAT_G_ERROR}"
 
 FeltNumber: TypeAlias = Literal[
     "turning rms", "turning peak", "gy peak", "gx onset", "gy onset", "gz onset", "start"
@@ -90,7 +93,8 @@ def find_worse(metrics: Metrics) -> list[Worse]:
         Of the total angular acceleration, the peak of Gy, the G onset and the start,
         in this order.
     """
-    return [*_angular(metrics), *_sideways(metrics), *_onset(metrics), *_start(metrics)]
+    ride = metrics.ride
+    return [*_angular(ride), *_sideways(ride), *_onset(ride), *_start(metrics)]
 
 
 def worse_words(metrics: Metrics, *, short: bool = False) -> str:
@@ -119,16 +123,16 @@ def _grew(pair: BeforeAfter, least: float, share: float = SHARE) -> bool:
     return after - before > max(share * before, least)
 
 
-def _angular(metrics: Metrics) -> list[Worse]:
-    turning = metrics.felt.turning
+def _angular(felt: Felt) -> list[Worse]:
+    turning = felt.turning
     texts: list[str] = []
     numbers: list[FeltNumber] = []
     cures = []
-    if _grew(turning.rms, LEAST_ANGULAR_ACCELERATION):
+    if _grew(turning.rms, UNFELT_ANGULAR_ACCELERATION):
         texts.append(f"{_from_to(turning.rms, 3)} rad/s² rms")
         numbers.append("turning rms")
         cures.append(ANGULAR_ACCELERATION_RMS_RATIO)
-    if _grew(turning.peak, LEAST_ANGULAR_ACCELERATION, PEAK_SHARE):
+    if _grew(turning.peak, UNFELT_ANGULAR_ACCELERATION, PEAK_SHARE):
         texts.append(f"peak {_from_to(turning.peak, 3)} rad/s²")
         numbers.append("turning peak")
         cures.append(ANGULAR_ACCELERATION_PEAK_RATIO)
@@ -138,16 +142,16 @@ def _angular(metrics: Metrics) -> list[Worse]:
     return [Worse(label, ", ".join(texts), tuple(numbers), cure)]
 
 
-def _sideways(metrics: Metrics) -> list[Worse]:
-    peak = metrics.felt.seat_g["gy"].peak
+def _sideways(felt: Felt) -> list[Worse]:
+    peak = felt.seat_g["gy"].peak
     if not _grew(peak, LEAST_GY, share=0.0):
         return []
     return [Worse("peak Gy", f"{_from_to(peak, 2)} g", ("gy peak",), "the machine's gy_g")]
 
 
-def _onset(metrics: Metrics) -> list[Worse]:
+def _onset(felt: Felt) -> list[Worse]:
     """Return the onset of the axis on which it grew most."""
-    onsets = {axis: metrics.felt.seat_g[axis].onset for axis in G_AXES}
+    onsets = {axis: felt.seat_g[axis].onset for axis in G_AXES}
     grown = {
         axis: pair.known[1] - pair.known[0]
         for axis, pair in onsets.items()
@@ -158,7 +162,10 @@ def _onset(metrics: Metrics) -> list[Worse]:
     most = max(grown, key=lambda axis: (grown[axis], axis))
     text = f"{_from_to(onsets[most], 2)} g/s"
     numbers = tuple(_ONSETS[axis] for axis in grown)
-    return [Worse(f"{most.capitalize()} onset", text, numbers, "the machine's g_onset_g_s")]
+    largest = max(pair.before or 0.0 for pair in onsets.values())
+    # A bound holds for every axis: below the onset of the profile itself it cannot be kept.
+    cure = "the machine's g_onset_g_s" if (onsets[most].after or 0.0) > largest else _SMALLER
+    return [Worse(f"{most.capitalize()} onset", text, numbers, cure)]
 
 
 def _from_to(pair: BeforeAfter, digits: int) -> str:

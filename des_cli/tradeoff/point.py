@@ -130,7 +130,7 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
         budget=(),
     )
     profile = replace(profile, reduction=wanted)
-    problem = pose_problem(profile, desired, asked)
+    problem = pose_problem(profile, desired, asked.record)
     points = []
     for r2 in weights or (_weight(wanted.r2),):
         weighed = replace(problem, r2=np.array([r2]))
@@ -244,6 +244,7 @@ def _measure(
                 asked=asked,
                 target=asked.motion,
                 desired=problem.desired,
+                held=asked.record,
                 seat=profile.seat,
                 solution=solution,
                 before=before,

@@ -82,7 +82,7 @@ def task_of(intervals: int) -> FreeTask:
     """Return the problem of the module's docstring."""
     reduction = Reduction(budget=BUDGETS, ends="match-start")
     motion = repeated_cobra(intervals)
-    return FreeTask(DES, Seat(), reduction, motion, motion, DES.limits)
+    return FreeTask(DES, Seat(), reduction, motion, DES.limits)
 
 
 class Case:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -30,9 +32,9 @@ def command_of(profile: Profile) -> GCommand:
     return profile.command
 
 
-def problems_of(text: str) -> list[str]:
+def problems_of(text: str, *settings: str) -> list[str]:
     with pytest.raises(ProfileError) as caught:
-        load(text)
+        load(text, *settings)
     return [str(problem) for problem in caught.value.complaints]
 
 
@@ -151,6 +153,54 @@ def test_what_is_wrong_with_columns(header: str, words: str) -> None:
     row = ",".join(["1"] * len(header.split(",")))
     problems = problems_of(f"{header}\n{row}\n")
     assert any(words in problem for problem in problems), problems
+
+
+def test_the_washout_of_recorded_rates_is_set_below_samples(tmp_path: Path) -> None:
+    table = "t_s,gz_g,p_deg_s\n0,1.4,0\n1,3,10\n2,3,10\n"
+    assert command_of(load(table)).washout == 2.0
+    assert command_of(load(table, "samples.washout_ms=500")).washout == 0.5
+    (tmp_path / "log.csv").write_text(table)
+    path = tmp_path / "log.yaml"
+    path.write_text("format: des-coriolis/1\nsamples: {file: log.csv, washout_s: 0.7}\n")
+    assert command_of(load_profile(path)).washout == 0.7
+    with pytest.raises(ProfileError, match="washout_s: washes out nothing: the samples are no G"):
+        load("t_s,gz_g\n0,1.4\n1,3\n", "samples.washout_s=1")
+    with pytest.raises(ProfileError, match="such as washout_s, is below samples"):
+        load(table, "g.washout_s=0.5")
+
+
+CORNERS = "t_s,gz_g\n0,1.3\n5,1.3\n5.1,1.33\n5.2,1.36\n5.3,1.39\n20,1.39\n"
+
+
+def test_no_long_line_between_corners_of_g_is_a_gap_unless_gaps_are_asked_for() -> None:
+    profile = load(CORNERS)
+    assert (profile.t[-1], profile.remarks) == (20.0, ())
+    (found,) = problems_of(CORNERS, "gap=refuse")[1:]
+    assert "a gap of 14.7 s" in found
+    assert len(load(CORNERS, "gap=bridge").remarks) == 2
+
+
+def test_a_step_between_two_rows_of_g_stays_one() -> None:
+    table = "t_s,gz_g\n0,1.3\n5,1.3\n{},4\n20,4\n"
+    profile = load(table.format(5.001))
+    step = np.flatnonzero(profile.t == 5.0)[0]
+    assert profile.t[step + 1] == 5.001
+    assert command_of(profile).end[step, 2] == pytest.approx(4.0)
+    (found,) = problems_of(table.format(5.000001))
+    assert "for a step there, move this row to t = 5.02 s" in found
+    (found,) = problems_of("t_s,gz_g\n0,1.3\n5,1.3\n5.000001,4\n5.01,4\n20,4\n")
+    assert found.endswith("remove one of the two rows")
+
+
+def test_resampled_rows_of_g_stay_joined_by_straight_lines() -> None:
+    table = "t_s,gz_g,p_deg_s\n0,1.3,0\n10,4,10\n20,1.3,0\n"
+    profile = load(table, "resample={step_s: 0.05}")
+    command = command_of(profile)
+    slope = (command.end - command.start)[:, 2] / np.diff(profile.t)
+    np.testing.assert_allclose(np.abs(slope), 0.27, atol=1e-9)
+    assert command.rates is not None
+    expected = np.radians(np.interp(profile.t, [0, 10, 20], [0, 10, 0]))
+    np.testing.assert_allclose(command.rates.start[:, 0], expected[:-1], atol=1e-12)
 
 
 def test_a_recorded_g_is_trimmed_resampled_and_smoothed() -> None:

@@ -75,7 +75,22 @@ def test_split_makes_a_profile_of_each_stretch() -> None:
     assert isinstance(second.command, BodyRates)
     assert second.command.start[:, 2].tolist() == [0.02, 0.0]
     assert first.sha256 != second.sha256
-    assert second.remarks == ("part 2 of 2 between gaps: lines 5 to 7, t = 5.02 to 5.04 s",)
+    assert second.remarks[0] == "part 2 of 2 between gaps: lines 5 to 7, t = 5.02 to 5.04 s"
+
+
+def test_a_later_stretch_tells_from_where_it_starts() -> None:
+    settings = ("gap=split", "initial={fork_deg: 10, cab_deg: 55}")
+    first, second = (load(GAP, *settings, part=part) for part in (1, 2))
+    assert not any("starts from" in remark for remark in first.remarks)
+    assert second.remarks[1].startswith(
+        "part 2 starts from the profile's initial angles, arm 0, fork 10, cab 55 deg, as every part"
+    )
+    assert "--trim 5.02:5.04 (or trim) with initial angles of its own" in second.remarks[1]
+    alone = load(GAP, "trim={from_s: 5.02, to_s: 5.04}", "initial.cab_deg=40")
+    np.testing.assert_array_equal(alone.t, second.t)
+    # Positions tell it by themselves.
+    table = GAP.replace("p_rad_s,q_rad_s,r_rad_s", "arm_rad_s,fork_rad,cab_rad")
+    assert len(load(table, "gap=split", part=2).remarks) == 1
 
 
 def test_one_profile_of_a_split_record_has_to_be_chosen() -> None:

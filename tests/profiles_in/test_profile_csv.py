@@ -57,6 +57,48 @@ def test_body_rates_are_read_with_the_recorded_attitude() -> None:
     assert np.isnan(command.attitude[2]).all()
 
 
+def test_degrees_under_the_name_of_radians_are_asked_about_and_not_changed() -> None:
+    rows = "".join(f"{k},0,{60 + k},-40\n" for k in range(5))
+    remarks: list[str] = []
+    _, command = parse_samples(RATES + rows, "x.csv", {}, remarks=remarks)
+    assert isinstance(command, BodyRates)
+    assert command.end[-1].tolist() == [0, 64, -40]
+    assert remarks == [
+        "q_rad_s reaches 64 rad/s; is it in deg/s? --column q_deg_s=q_rad_s reads it so"
+    ]
+    # One wild row is no unit, and neither is a name in degrees.
+    for text in (RATES + "0,0,1,1\n1,0,99,1\n2,0,1,1\n", RATES.replace("rad", "deg") + rows):
+        parse_samples(text, "x.csv", {}, remarks=(said := []))
+        assert said == []
+
+
+def test_a_column_of_clock_times_under_another_name_is_named_with_its_option() -> None:
+    rows = "12:00:00.0,1,2,3\n12:00:00.5,1,2,3\n"
+    text = "UTC,p_rad_s,q_rad_s,r_rad_s\n" + rows
+    assert problems_of(text) == [
+        "<stdin>:1: a column is missing: t_s, t_ms, t_us, t_ns or t_min; "
+        "UTC holds times of day: --column t=UTC reads them"
+    ]
+    t, _ = parse_samples(text, "x.csv", {"t": "UTC"})
+    assert t.tolist() == [0.0, 0.5]
+    (found,) = problems_of(text.replace("UTC", "UTC time"))
+    assert found.endswith("--column 't=UTC time' reads them")
+
+
+def test_a_jump_that_no_joint_follows_is_told_by_its_line_and_time() -> None:
+    fork = [0.1 * k + (25.0 if k >= 6 else 0.0) for k in range(12)]
+    rows = "".join(f"{0.02 * k:.2f},3,{angle:.6g},5\n" for k, angle in enumerate(fork))
+    remarks: list[str] = []
+    parse_samples(JOINTS + rows, "x.csv", {}, remarks=remarks)
+    assert remarks == [
+        "line 8: fork_deg jumps from 0.5 to 25.6 deg at t = 0.12 s, which no joint follows: "
+        "mend the record, or --trim it to one side"
+    ]
+    # Few rows far apart are a motion.
+    parse_samples(JOINTS + "0,3,0,5\n1,3,0,5\n2,3,60,5\n9,3,60,5\n", "x.csv", {}, remarks=(t := []))
+    assert t == []
+
+
 def test_an_incomplete_attitude_is_left_out() -> None:
     _, command = parse_samples(RATES.replace("\n", ",q0,quality\n") + "0,1,2,3,1,5\n1,1,2,3,1,5\n",
                                "x.csv", {})  # fmt: skip
@@ -87,11 +129,19 @@ def test_the_ways_in_which_spreadsheets_write_are_read(text: str) -> None:
 @pytest.mark.parametrize(
     ("body", "line", "words"),
     [
-        ("0,1,2,3\n0.3,1,2,3\n0.3,1,2,3\n", 4, "t_s: 0.3 does not increase (previous 0.3)"),
+        (
+            "0,1,2,3\n0.3,1,2,3\n0.3,1,2,3\n",
+            4,
+            "t_s: 0.3 does not increase (previous 0.3); remove one of",
+        ),
         ("0,1,2,3\n1,1,2\n", 3, "has 3 cells, the header has 4"),
         ("0,1,2,3\n1,1,2,3,4\n", 3, "has 5 cells, the header has 4"),
-        ("0,1,2,3\n1,,2,3\n", 3, "arm_rpm: is missing"),
-        ("0,1,2,3\n1,1,nan,3\n", 3, "fork_deg: is nan"),
+        ("0,1,2,3\n1,,2,3\n", 3, "arm_rpm: is missing; take out the rows"),
+        (
+            "0,1,2,3\n1,1,nan,3\n",
+            3,
+            "fork_deg: is nan; take out the rows without a number: a gap of",
+        ),
         ("0,1,2,3\n1,1,inf,3\n", 3, "fork_deg: must be a number, is 'inf'"),
         ("0,1,2,3\n1,1,1e400,3\n", 3, "fork_deg: '1e400' is too large for a number"),
         ("0,1,2,3\n1,1,1_0,3\n", 3, "fork_deg: must be a number, is '1_0'"),
@@ -122,7 +172,10 @@ def test_a_quoted_line_break_keeps_the_count_of_lines() -> None:
         (b"\n\n", "is empty"),
         (JOINTS.encode(), "has a header but no rows"),
         (JOINTS.encode() + b"0,1,2,3\n", "has one row"),
-        (b"t_s,arm_rpm,arm_rpm,cab_deg\n0,1,2,3\n", "the column arm_rpm stands 2 times"),
+        (
+            b"t_s,arm_rpm,arm_rpm,cab_deg\n0,1,2,3\n",
+            "the column arm_rpm stands 2 times; rename all but one",
+        ),
         (b"t_s,arm_rpm,,cab_deg\n0,1,2,3\n", "a column is missing: fork_rad or fork_deg"),
         (JOINTS.encode() + b"0,1,\x00,3\n", "holds a NUL byte"),
         (JOINTS.encode() + b"0,1,\xff,3\n", "fork_deg: must be a number, is 'ÿ'"),

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.felt_reference import Table, by_parabolas, gauss_points
 from support.seat_forms import by_closed_forms
 
-from des_cli.errors import UsageError
+from des_cli.errors import NotReleasedError, UsageError
 from des_cli.kinematics.response import respond
 from des_cli.model.machine import DHRow, Machine, Seat
 from des_cli.model.machines import COVISART, DES, JOHNSVILLE
 from des_cli.model.motion import DesiredMotion, Motion
-from des_cli.model.profile import BodyRates, GCommand, Profile
+from des_cli.model.profile import BodyRates, GCommand, Profile, Reduction
 from des_cli.model.response import Response
 from des_cli.pipeline import reduce_profile
 from des_cli.reduction.desired import find_desired
+from des_cli.reduction.g_profile import require_makeable
 from des_cli.reduction.limits import find_violations
 
 FORWARD = Seat(yaw=np.radians(270))
@@ -53,6 +56,23 @@ def reference_g(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     states = by_parabolas(Table(motion.t, rate, motion.angle[:, 1:]))
     t, _ = gauss_points(motion.t)
     return t, by_closed_forms(*states(t), FORWARD.yaw, FORWARD.pitch).g
+
+
+@pytest.mark.parametrize(
+    ("gz", "words"), [(0.0, "asks for no G at all, and no"), (0.5, "asks for 0.5 g at most, and")]
+)
+def test_less_than_gravity_throughout_is_refused_in_a_sentence_of_its_own(
+    gz: float, words: str
+) -> None:
+    with pytest.raises(NotReleasedError, match=words):
+        reduce_profile(along_spine((0, gz), (2, gz)))
+
+
+def test_a_little_less_than_gravity_or_what_is_allowed_is_followed() -> None:
+    require_makeable(along_spine((0, 0.95), (2, 0.95)))
+    require_makeable(along_spine((0, 0.2), (2, 1.2)))
+    allowed = Reduction(allow_change=1.5)
+    require_makeable(replace(along_spine((0, 0.5), (2, 0.5)), reduction=allowed))
 
 
 def test_gradual_onset_is_followed() -> None:

@@ -1,0 +1,93 @@
+"""What is checked of a record's numbers before they are made into commands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from des_cli.errors import Complaint
+from des_cli.model.arrays import Floats
+from des_cli.profiles_in.column_kinds import RATES, Column
+from des_cli.profiles_in.csv_header import Header
+from des_cli.profiles_in.csv_table import Rows
+from des_cli.profiles_in.sample_times import SampleTimes
+from des_cli.profiles_in.sampling import MAX_MAGNITUDE
+from des_cli.profiles_in.wording import option, plain
+
+FASTEST = 20.0
+"""Rate [rad/s] above which no aircraft turns and no centrifuge: three turns a second. A
+record that is beyond it on most of its rows is one in deg/s under another name."""
+
+_TOLD = 20
+"""Times described before the rest is only counted."""
+
+
+def check_times(
+    header: Header, column: Column, times: SampleTimes, rows: Rows, complaints: list[Complaint]
+) -> None:
+    """Say where times do not increase, and where there are too few of them."""
+    if len(times.t) < 2:
+        what = "has one row; a motion needs two or more"
+        complaints.append(Complaint(header.label, what))
+        return
+    step = np.diff(times.t)
+    late = np.flatnonzero(~(step > 0))
+    name = plain(column.in_file)
+    for index in late[:_TOLD].tolist():
+        cure = (
+            "remove one of the two rows"
+            if step[index] == 0.0
+            else "put the rows in order, or cut the file in two where its clock was set back"
+        )
+        complaints.append(
+            Complaint(
+                f"{header.label}:{rows.lines[index + 1]}",
+                f"{name}: {times.written(index + 1)} does not increase "
+                f"(previous {times.written(index)}); {cure}",
+            )
+        )
+    if len(late) > _TOLD:
+        what = f"… and {len(late) - _TOLD} more times like these"
+        complaints.append(Complaint(header.label, what))
+
+
+def check_magnitudes(
+    header: Header,
+    chosen: Sequence[Column],
+    by_stem: Mapping[str, Floats],
+    rows: Rows,
+    complaints: list[Complaint],
+) -> None:
+    """Say where a command is beyond any machine."""
+    for column in chosen:
+        if column.stem == "t" or column.unit is None:
+            continue
+        wrong = np.flatnonzero(np.abs(by_stem[column.stem]) > MAX_MAGNITUDE)
+        if len(wrong):
+            place = f"{header.label}:{rows.lines[int(wrong[0])]}"
+            what = f"is beyond {MAX_MAGNITUDE:g} rad or rad/s ({len(wrong)} such cells)"
+            complaints.append(Complaint(place, f"{plain(column.in_file)}: {what}"))
+
+
+def tell_doubtful_units(
+    chosen: Sequence[Column], by_stem: Mapping[str, Floats], remarks: list[str]
+) -> None:
+    """Ask whether rates in rad/s that nothing reaches are in deg/s; they are read as they are.
+
+    One line for all of them, of the fastest: who mends one header mends the others.
+    """
+    stems = [stem for stem in (*RATES, "arm") if stem in by_stem]
+    rates = [c for c in chosen if c.stem in stems and c.unit and c.unit.suffix == "rad_s"]
+    if not rates:
+        return
+    fastest = np.max([np.abs(by_stem[column.stem]) for column in rates], axis=0)
+    if np.median(fastest) <= FASTEST:
+        return
+    peaks = [float(np.max(np.abs(by_stem[column.stem]))) for column in rates]
+    column = rates[int(np.argmax(peaks))]
+    name = plain(column.in_file)
+    remarks.append(
+        f"{name} reaches {max(peaks):.3g} rad/s; is it in deg/s? "
+        f"{option('--column', f'{column.stem}_deg_s={column.in_file}')} reads it so"
+    )
