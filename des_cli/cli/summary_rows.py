@@ -6,6 +6,7 @@ from collections.abc import Collection
 from typing import get_args
 
 from des_cli.model.coriolis import ComponentKey
+from des_cli.model.loads import Driven
 from des_cli.model.metric import (
     ATTITUDE_ERROR,
     JOINT_DEVIATION,
@@ -13,7 +14,7 @@ from des_cli.model.metric import (
     SEAT_G_ERROR,
     SEAT_RATE_DEVIATION,
 )
-from des_cli.model.metrics import Change, Driven, Metrics, When
+from des_cli.model.metrics import Change, Metrics, When
 from des_cli.results.budgets import spent_budgets
 from des_cli.results.ends import end_words
 from des_cli.show.words import CONSOLE, PARTS, axis_name, told_parts

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from des_cli.model.arrays import Floats
+from des_cli.model.loads import JointLoad
 from des_cli.model.machine import JOINTS, Joint, Machine
-from des_cli.model.metrics import JointLoad
 from des_cli.model.motion import Motion
 from des_cli.model.run import Violation
 from des_cli.reduction.limits import jerk_at_samples, measure_peaks

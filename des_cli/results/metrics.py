@@ -8,6 +8,7 @@ import numpy as np
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.arrays import Floats
+from des_cli.model.loads import Loads
 from des_cli.model.machine import JOINTS, Joint, Seat
 from des_cli.model.metric import METRICS
 from des_cli.model.metrics import (
@@ -16,7 +17,6 @@ from des_cli.model.metrics import (
     Constant,
     ConstantBaseline,
     Fidelity,
-    Loads,
     Metrics,
     ProfileFacts,
     Singularity,

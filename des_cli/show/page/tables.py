@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping
 
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.felt import G_AXES, BeforeAfter, RateSizes, TurningSizes
+from des_cli.model.loads import Driven, JointLoad
 from des_cli.model.machine import JOINTS, Joint
-from des_cli.model.metrics import Driven, JointLoad, Metrics
+from des_cli.model.metrics import Metrics
 from des_cli.results.worse import worse_numbers
 from des_cli.show.page.comparison import Cell
 from des_cli.show.words import PAGE, axis_name

@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from des_cli.model.arrays import Floats
+from des_cli.model.loads import Driven
 from des_cli.model.machine import JOINTS
-from des_cli.model.metrics import Driven, Metrics
+from des_cli.model.metrics import Metrics
 from des_cli.show.plots.canvas import AFTER, BEFORE, DESIRED, MODIFIED, Pen, draw, note, sheet
 from des_cli.show.words import FIGURE
 
