@@ -59,3 +59,15 @@ def test_what_is_not_what_it_should_be_is_not_known() -> None:
     assert found.baseline.constant_p is not None
     assert found.baseline.constant_p.joint_deviation is None
     assert found.notices == ("one",)
+
+
+def test_the_ride_is_the_one_that_was_reduced() -> None:
+    felt = {"seat_g": {"gy": {"peak_before_g": 0.5, "peak_after_g": 0.6}}}
+    other = {"seat_g": {"gy": {"peak_before_g": 0.7, "peak_after_g": 0.6}}}
+    assert read_metrics({"felt": felt}).ride.seat_g["gy"].peak == (0.5, 0.6)
+    added = {"budgets": {JOINT_DEVIATION: 0.02}, "felt": other}
+    found = read_metrics({"felt": felt, "added": added})
+    assert found.ride.seat_g["gy"].peak == (0.7, 0.6)
+    assert found.added is not None
+    assert found.added.budgets == {JOINT_DEVIATION: 0.02}
+    assert read_metrics({"felt": felt, "added": None}).added is None
