@@ -23,7 +23,6 @@ from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion
 from des_cli.results.metrics import Measured, measure
-from des_cli.results.notices import find_notices
 from des_cli.verify.claim import Claim
 from des_cli.verify.verify import verify
 
@@ -125,8 +124,7 @@ def reduce_profile(
         ),
         baselines=compare(found.problem, modified, chain_of(profile.machine, found.seat)),
     )
-    metrics = measure(measured)
-    metrics["notices"] = find_notices(profile, asked, metrics)
+    results = measure(measured)
     on_stage("verification")
     return Run(
         profile=profile,
@@ -139,8 +137,7 @@ def reduce_profile(
         after=after,
         checks=_checks(profile, asked, target, found, led, most),
         violations=measured.violations,
-        metrics=metrics,
-        notices=tuple(metrics["notices"]),
+        results=results,
     )
 
 

@@ -1,13 +1,18 @@
 """The suffix of a name tells its unit: ``arm_rpm``, ``fork_deg``, ``t_s``.
 
 Everything inside the project is SI and radians; this table is the only place
-where another unit is turned into them.
+where another unit is turned into them. A share becomes a percentage here too.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
+
+Write: TypeAlias = Callable[[float], str]
+"""How a number becomes text."""
 
 FOOT_M = 0.3048
 """International foot [m]."""
@@ -94,3 +99,26 @@ def unit_named(suffix: str) -> Unit | None:
 def suffixes(quantity: str) -> tuple[str, ...]:
     """Return every suffix that measures a quantity, in the table's order."""
     return tuple(unit.suffix for unit in UNITS if unit.quantity == quantity)
+
+
+def percent(share: float, digits: int | None = None) -> str:
+    """Write a share in percent: one decimal, two below 1 %, none from 100 % on.
+
+    Parameters
+    ----------
+    share : float
+    digits : int, optional
+        Significant digits instead: of a number that somebody gave, or that is set beside one.
+
+    >>> percent(0.6892), percent(0.0163), percent(0.00163), percent(7.5)
+    ('68.9 %', '1.6 %', '0.16 %', '750 %')
+    >>> percent(0.125, 6), percent(0.05, 6), percent(0.0999912, 4)
+    ('12.5 %', '5 %', '9.999 %')
+    """
+    hundredths = 100.0 * share
+    if digits is not None:
+        return f"{hundredths:.{digits}g} %"
+    size = abs(hundredths)
+    # As it is rounded: 99.96 is 100 and has no decimal.
+    decimals = 0 if size >= 99.95 else 1 if size >= 0.995 else 2
+    return f"{hundredths:.{decimals}f} %"

@@ -4,6 +4,7 @@ import itertools
 import json
 import math
 import re
+from dataclasses import fields
 from pathlib import Path
 from typing import get_args
 
@@ -14,14 +15,14 @@ from ruamel.yaml import YAML
 from des_cli.errors import ExitCode
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget, MetricKey
-from des_cli.model.motion import GOffset, Motion
+from des_cli.model.metrics import Added, AskedG
+from des_cli.model.motion import Motion
 from des_cli.model.profile import Reduction
 from des_cli.pipeline import reduce_profile
 from des_cli.profiles_in.expression import FUNCTIONS
 from des_cli.profiles_in.load import load_profile
 from des_cli.profiles_in.machine_schema import JointLimitsSection, MachineSection, OccupantSection
 from des_cli.profiles_in.machine_yaml import parse_machine
-from des_cli.results.asked_g import asked_g_metrics
 from des_cli.runs_out.tables import trajectory_names
 from des_cli.units import UNITS, split_unit, suffixes
 
@@ -138,9 +139,9 @@ def test_metrics(metrics: dict) -> None:
     assert {name for name, _ in rows} == set(metrics)
     metrics["solver"]["budget"] = None  # a mapping of metrics, or null
     assert metrics["asked_g"] is None
-    metrics["asked_g"] = asked_g_metrics(GOffset(0.0, 0.0, 0.0, 0.0, 0.0))
+    metrics["asked_g"] = dict.fromkeys(each.name for each in fields(AskedG))
     assert metrics["added"] is None
-    metrics["added"] = {"budgets": None, "felt": None}  # of a changed record
+    metrics["added"] = dict.fromkeys(each.name for each in fields(Added))
     optional = {"recorded_attitude_error_max_deg", "r1"}
     for name, cell in rows:
         words = {part for word in named(cell) for part in word.split(".")}

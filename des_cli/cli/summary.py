@@ -7,14 +7,14 @@ from des_cli.cli.console import Console
 from des_cli.cli.summary_rows import (
     changes,
     limits_used,
-    number,
-    objective_keys,
-    percent,
     summary_rows,
 )
 from des_cli.errors import ExitCode, Failure
-from des_cli.results.reading import number as read
+from des_cli.model.metric import SEAT_G_ERROR, SEAT_RATE_DEVIATION
+from des_cli.model.metrics import Metrics
+from des_cli.results.reading import read_metrics
 from des_cli.results.worse import worse_words
+from des_cli.show.words import CONSOLE, steps_taken, told_parts
 
 _LABEL_WIDTH = 14
 
@@ -36,21 +36,22 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
         console.warn(result.notices)
         return
     if result.state != "reduced" or result.metrics is None:
-        console.say(_short_line(console, result))
+        console.say(_idle_line(console, result))
         return
+    metrics = read_metrics(result.metrics)
     if alone:
-        for line in _headlines(console, result):
+        for line in _headlines(console, result.name, metrics):
             console.say(line)
-        for label, text in summary_rows(result):
+        for label, text in summary_rows(metrics, result.objective):
             console.say(f"  {label:<{_LABEL_WIDTH}} {text}")
     else:
-        console.say(_short_line(console, result))
+        console.say(_reduced_line(console, result, metrics))
     label = f"  {'limits':<{_LABEL_WIDTH}} "
     whose = "" if alone else f"{result.name}: "
     console.warn(f"{label}{whose}{line}" for line in result.violations)
     if alone and not any(line.startswith("modified") for line in result.violations):
         kept = "kept by the modified motion" if result.violations else "all kept"
-        console.say(f"{label}{kept}{limits_used(result.metrics)}")
+        console.say(f"{label}{kept}{limits_used(metrics)}")
     for notice in result.notices:
         console.say(console.style(f"  {'notice':<{_LABEL_WIDTH}} {notice}", "warning"))
     if alone and result.table is None:
@@ -79,20 +80,18 @@ def print_closing(console: Console, results: list[JobResult], planned: int) -> N
     console.say(console.style(text, "error" if failed else "good"))
 
 
-def _headlines(console: Console, result: JobResult) -> list[str]:
+def _headlines(console: Console, profile: str, metrics: Metrics) -> list[str]:
     """Return the first lines: what got worse, if anything, then how it was solved."""
-    assert result.metrics is not None
-    solver = result.metrics["solver"]
-    steps = "1 iteration" if solver["iterations"] == 1 else f"{solver['iterations']} iterations"
+    solver = metrics.solver
     how = (
-        f"{solver['method']} cross-coupling by {solver['algorithm']}, "
-        f"{solver['control']} control, {solver['axes']} axes"
+        f"{solver.method} cross-coupling by {solver.algorithm}, "
+        f"{solver.control} control, {solver.axes} axes"
     )
-    look = "good" if solver["status"] == "converged" else "warning"
-    ended = console.style(f"{solver['status']} in {steps}", look)
+    look = "good" if solver.status == "converged" else "warning"
+    ended = console.style(f"{solver.status} in {steps_taken(solver.iterations)}", look)
     status = f"{ended} ({how})"
-    name = console.style(result.name, "title")
-    worse = worse_words(result.metrics)
+    name = console.style(profile, "title")
+    worse = worse_words(metrics)
     if not worse:
         return [f"{name}: {status}"]
     return [
@@ -101,20 +100,25 @@ def _headlines(console: Console, result: JobResult) -> list[str]:
     ]
 
 
-def _short_line(console: Console, result: JobResult) -> str:
-    name = console.style(f"{result.name:<20}", "title")
-    if result.state == "kept":
-        return f"{name} already done in {result.written}"
-    if result.state == "planned":
-        return f"{name} would be reduced into {result.written}"
-    assert result.metrics is not None
-    rate = percent(read(result.metrics, "fidelity.seat_rate_deviation_relative"))
-    error = number(read(result.metrics, "fidelity.seat_g_rms_error_g"))
-    gained = changes(result.metrics, objective_keys(result))
-    worse = worse_words(result.metrics, short=True)
+def _idle_line(console: Console, result: JobResult) -> str:
+    """Say of a profile that was not reduced why not."""
+    what = "already done in" if result.state == "kept" else "would be reduced into"
+    return f"{_column(console, result)} {what} {result.written}"
+
+
+def _reduced_line(console: Console, result: JobResult, metrics: Metrics) -> str:
+    rate = CONSOLE.percent(metrics.fidelity.value(SEAT_RATE_DEVIATION))
+    error = CONSOLE.number(metrics.fidelity.value(SEAT_G_ERROR))
+    gained = changes(metrics, told_parts(result.objective))
+    worse = worse_words(metrics, short=True)
     told = f"{console.style(worse, 'warning')}; " if worse else ""
     cost = f"seat rate {rate}, G {error} g rms"
-    return f"{name} {told}{gained}, {cost}  {console.style(result.written, 'good')}"
+    where = console.style(result.written, "good")
+    return f"{_column(console, result)} {told}{gained}, {cost}  {where}"
+
+
+def _column(console: Console, result: JobResult) -> str:
+    return console.style(f"{result.name:<20}", "title")
 
 
 def exit_code_of(results: list[JobResult], planned: int) -> ExitCode:

@@ -32,6 +32,7 @@ from des_cli.cli.sweep_options import (
     refuse_weights,
 )
 from des_cli.errors import ExitCode
+from des_cli.model.metric import SEAT_G_ERROR, SEAT_RATE_DEVIATION
 
 if TYPE_CHECKING:
     from des_cli.model.profile import Control, Profile
@@ -41,13 +42,13 @@ if TYPE_CHECKING:
 
 @click.command(
     short_help="Trade deviation for cross-coupling: a curve of optima.",
-    epilog="""\b
+    epilog=f"""\b
 Examples:
   des-coriolis sweep cobra
   des-coriolis sweep cobra --r2s 8,1,0.2 --plot curve.png -o curve.csv
-  des-coriolis sweep my.yaml --budgets seat_g_rms_error_g=0.05,0.1,0.2 --jobs 2
-  des-coriolis sweep my.yaml --controls free --budgets seat_rate_deviation_relative=5%,10%,20% \\
-    --budget seat_g_rms_error_g=0.05
+  des-coriolis sweep my.yaml --budgets {SEAT_G_ERROR}=0.05,0.1,0.2 --jobs 2
+  des-coriolis sweep my.yaml --controls free --budgets {SEAT_RATE_DEVIATION}=5%,10%,20% \\
+    --budget {SEAT_G_ERROR}=0.05
 """,
 )
 @click.argument("profile", metavar="PROFILE")
@@ -55,7 +56,7 @@ Examples:
     "--budgets",
     metavar="MOST,...",
     callback=read_swept_budgets,
-    help="Budgets of joint_deviation_relative, or METRIC=MOST,... of another fidelity metric; "
+    help=f"Budgets of {DEFAULT_METRIC}, or METRIC=MOST,... of another fidelity metric; "
     "the profile's budgets on other metrics stay.  [default: 0.01,0.02,0.05,0.1]",
 )
 @click.option(

@@ -12,8 +12,9 @@ import click
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.options import TABLE_FORMATS, read_budgets, without_percent
 from des_cli.errors import Complaint, FileAccessError
+from des_cli.model.metric import STUDY_METRIC
 
-DEFAULT_METRIC, DEFAULT_BUDGETS = "joint_deviation_relative", (0.01, 0.02, 0.05, 0.1)
+DEFAULT_METRIC, DEFAULT_BUDGETS = STUDY_METRIC, (0.01, 0.02, 0.05, 0.1)
 CONTROLS = ("free", "scalar", "per-joint")
 DEFAULT_CONTROLS = ("scalar", "per-joint")
 

@@ -5,24 +5,31 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from des_cli.cli.summary_rows import change, number, percent
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
+    JOINT_DEVIATION,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+)
 from des_cli.model.tradeoff import TradePoint
+from des_cli.show.words import CONSOLE, steps_taken
 
 # Columns: head, field, how a value is written.
 _COLUMNS = (
-    ("objective", "objective_reduction", percent),
-    ("vector", "vector_reduction", percent),
-    ("BB3", "bb3_reduction", percent),
-    ("seat x", "seat_x_reduction", percent),
-    ("seat y", "seat_y_reduction", percent),
-    ("seat z", "seat_z_reduction", percent),
-    ("joints", "joint_deviation_relative", percent),
-    ("rate", "seat_rate_deviation_relative", percent),
-    ("G rms [g]", "seat_g_rms_error_g", number),
-    ("α error", "seat_angular_acceleration_rms_error_rad_s2", number),
-    ("α rms", "seat_angular_acceleration_rms_rad_s2", number),
-    ("α peak", "seat_angular_acceleration_peak_rad_s2", number),
-    ("turn [deg]", "attitude_error_max_deg", number),
+    ("objective", "objective_reduction", CONSOLE.percent),
+    ("vector", "vector_reduction", CONSOLE.percent),
+    ("BB3", "bb3_reduction", CONSOLE.percent),
+    ("seat x", "seat_x_reduction", CONSOLE.percent),
+    ("seat y", "seat_y_reduction", CONSOLE.percent),
+    ("seat z", "seat_z_reduction", CONSOLE.percent),
+    ("joints", JOINT_DEVIATION, CONSOLE.percent),
+    ("rate", SEAT_RATE_DEVIATION, CONSOLE.percent),
+    ("G rms [g]", SEAT_G_ERROR, CONSOLE.number),
+    ("α error", ANGULAR_ACCELERATION_ERROR, CONSOLE.number),
+    ("α rms", "seat_angular_acceleration_rms_rad_s2", CONSOLE.number),
+    ("α peak", "seat_angular_acceleration_peak_rad_s2", CONSOLE.number),
+    ("turn [deg]", ATTITUDE_ERROR, CONSOLE.number),
 )
 _WIDTH = 11
 _TITLES = {
@@ -54,11 +61,11 @@ def point_line(point: TradePoint) -> str:
     name = f"{point.control}, {point.swept} {point.value:g}"
     if point.objective_reduction is None:
         return f"{name}: {point.status}: {point.message}"
-    steps = "1 iteration" if point.iterations == 1 else f"{point.iterations} iterations"
-    turning = number(point.seat_angular_acceleration_rms_rad_s2)
+    steps = steps_taken(point.iterations)
+    turning = CONSOLE.number(point.seat_angular_acceleration_rms_rad_s2)
     gained = (
-        f"{change(point.objective_reduction)} at joints {_joints(point)}, "
-        f"seat rate {percent(point.seat_rate_deviation_relative)}, α {turning} rad/s² rms"
+        f"{CONSOLE.less(point.objective_reduction)} at joints {_joints(point)}, "
+        f"seat rate {CONSOLE.percent(point.fidelity(SEAT_RATE_DEVIATION))}, α {turning} rad/s² rms"
     )
     why = f" ({point.message})" if point.status == "unverified" else ""
     return f"{name}: {point.status} in {steps}, {gained}{why}"
@@ -70,12 +77,12 @@ def _before(points: Sequence[TradePoint]) -> str:
         rms = point.seat_angular_acceleration_rms_before_rad_s2
         peak = point.seat_angular_acceleration_peak_before_rad_s2
         if rms is not None and peak is not None:
-            return f", before {number(rms)} rms and {number(peak)} peak"
+            return f", before {CONSOLE.number(rms)} rms and {CONSOLE.number(peak)} peak"
     return ""
 
 
 def _joints(point: TradePoint) -> str:
-    return percent(point.joint_deviation_relative)
+    return CONSOLE.percent(point.fidelity(JOINT_DEVIATION))
 
 
 def _title(point: TradePoint) -> str:
@@ -100,4 +107,4 @@ def _curve(title: str, points: Sequence[TradePoint]) -> Iterator[str]:
 
 def _head(swept: str) -> str:
     """Call the usual budget by a short name; any other by its own."""
-    return "budget" if swept == "joint_deviation_relative" else swept
+    return "budget" if swept == JOINT_DEVIATION else swept

@@ -9,6 +9,7 @@ from des_cli.model.arrays import Flags, Floats
 from des_cli.model.machine import JOINTS, Machine
 from des_cli.model.motion import DesiredMotion
 from des_cli.model.profile import Profile
+from des_cli.units import percent
 
 CUTOFF_HZ = 2.0
 """What is suggested [Hz]: joints of tonnes follow no maneuver that is faster."""
@@ -52,13 +53,12 @@ def suggest_smoothing(profile: Profile, asked: DesiredMotion) -> str:
     if not np.any(noisy):
         return ""
     worst = int(np.argmax(np.where(noisy, often - still, -1.0)))
-    percent = 100.0 * np.array([often[worst], still[worst], change[worst] / size[worst]])
     return (
         f"the record is noisy: the {JOINTS[worst]}'s acceleration or jerk is beyond a limit "
-        f"{percent[0]:.0f} % of the time, and {percent[1]:.0f} % without what is faster than "
-        f"{CUTOFF_HZ:g} Hz, which is {percent[2]:.2g} % of its rate; "
-        f"smooth: {{cutoff_hz: {CUTOFF_HZ:g}}} (--smooth {CUTOFF_HZ:g}) takes that out before the "
-        "reduction"
+        f"{percent(often[worst])} of the time, and {percent(still[worst])} without what is "
+        f"faster than {CUTOFF_HZ:g} Hz, which is {percent(change[worst] / size[worst])} of its "
+        f"rate; smooth: {{cutoff_hz: {CUTOFF_HZ:g}}} (--smooth {CUTOFF_HZ:g}) takes that out "
+        "before the reduction"
     )
 
 

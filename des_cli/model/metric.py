@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 MetricKey: TypeAlias = Literal[
     "joint_deviation_relative",
@@ -20,6 +20,19 @@ MetricKey: TypeAlias = Literal[
     "seat_angular_acceleration_peak_ratio",
     "attitude_error_max_deg",
 ]
+
+# Everything else in the program names a metric by these.
+JOINT_DEVIATION: Final = "joint_deviation_relative"
+JOINT_DEVIATION_SQUARED: Final = "joint_deviation_relative_squared"
+FACTOR_DEVIATION: Final = "mean_square_one_minus_p"
+SEAT_RATE_DEVIATION: Final = "seat_rate_deviation_relative"
+SEAT_G_DEVIATION: Final = "seat_g_deviation_relative"
+SEAT_G_ERROR: Final = "seat_g_rms_error_g"
+ANGULAR_ACCELERATION_DEVIATION: Final = "seat_angular_acceleration_deviation_relative"
+ANGULAR_ACCELERATION_ERROR: Final = "seat_angular_acceleration_rms_error_rad_s2"
+ANGULAR_ACCELERATION_RMS_RATIO: Final = "seat_angular_acceleration_rms_ratio"
+ANGULAR_ACCELERATION_PEAK_RATIO: Final = "seat_angular_acceleration_peak_ratio"
+ATTITUDE_ERROR: Final = "attitude_error_max_deg"
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,31 +63,44 @@ METRICS: Mapping[MetricKey, Metric] = MappingProxyType(
     {
         metric.key: metric
         for metric in (
-            Metric("joint_deviation_relative", "joints"),
-            Metric("joint_deviation_relative_squared", "joints, squared"),
-            Metric("mean_square_one_minus_p", "mean (1 - p)²"),
-            Metric("seat_rate_deviation_relative", "seat rate"),
-            Metric("seat_g_deviation_relative", "G"),
-            Metric("seat_g_rms_error_g", "G error", "g"),
-            Metric("seat_angular_acceleration_deviation_relative", "angular acceleration"),
-            Metric(
-                "seat_angular_acceleration_rms_error_rad_s2", "angular acceleration error", "rad/s²"
-            ),
-            Metric("seat_angular_acceleration_rms_ratio", "angular acceleration rms", "times"),
-            Metric("seat_angular_acceleration_peak_ratio", "angular acceleration peak", "times"),
-            Metric("attitude_error_max_deg", "attitude", "deg"),
+            Metric(JOINT_DEVIATION, "joints"),
+            Metric(JOINT_DEVIATION_SQUARED, "joints, squared"),
+            Metric(FACTOR_DEVIATION, "mean (1 - p)²"),
+            Metric(SEAT_RATE_DEVIATION, "seat rate"),
+            Metric(SEAT_G_DEVIATION, "G"),
+            Metric(SEAT_G_ERROR, "G error", "g"),
+            Metric(ANGULAR_ACCELERATION_DEVIATION, "angular acceleration"),
+            Metric(ANGULAR_ACCELERATION_ERROR, "angular acceleration error", "rad/s²"),
+            Metric(ANGULAR_ACCELERATION_RMS_RATIO, "angular acceleration rms", "times"),
+            Metric(ANGULAR_ACCELERATION_PEAK_RATIO, "angular acceleration peak", "times"),
+            Metric(ATTITUDE_ERROR, "attitude", "deg"),
         )
     }
 )
 """The measures by key, in the order in which they are reported."""
 
-UNFELT_ANGULAR_ACCELERATION = 0.01
+UNFELT_ANGULAR_ACCELERATION: Final = 0.01
 """Total angular acceleration [rad/s^2] that is taken for nothing: about half a degree per
 second squared, at the threshold of the semicircular canals. Ratios of sizes are to this at
 the least, for no ride gets worse by a multiple of what nobody feels."""
 
-STUDY_METRIC: MetricKey = "joint_deviation_relative"
+STUDY_METRIC: Final = JOINT_DEVIATION
 """What a budget without a name is on: the study's measure."""
+
+
+def metric_named(key: str) -> Metric | None:
+    """Return the metric with a key, or None.
+
+    >>> metric_named("attitude"), metric_named(ATTITUDE_ERROR).unit
+    (None, 'deg')
+    """
+    return next((metric for metric in METRICS.values() if metric.key == key), None)
+
+
+def label_of(key: str) -> str:
+    """Return what a metric is called on a line of text; one of another version by its key."""
+    metric = metric_named(key)
+    return key if metric is None else metric.label
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,13 @@ import numpy as np
 
 from des_cli.model.arrays import Floats, freeze
 from des_cli.model.machine import Joint, Machine, Seat
-from des_cli.model.metric import Budget
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_PEAK_RATIO,
+    ANGULAR_ACCELERATION_RMS_RATIO,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+    Budget,
+)
 
 Method: TypeAlias = Literal["minimum", "zero"]
 Algorithm: TypeAlias = Literal["optimum", "report-sweep"]
@@ -146,10 +152,10 @@ class GCommand:
 
 
 FELT_BUDGETS = (
-    Budget("seat_g_rms_error_g", 0.05),
-    Budget("seat_rate_deviation_relative", 0.1),
-    Budget("seat_angular_acceleration_rms_ratio", 1.05),
-    Budget("seat_angular_acceleration_peak_ratio", 1.1),
+    Budget(SEAT_G_ERROR, 0.05),
+    Budget(SEAT_RATE_DEVIATION, 0.1),
+    Budget(ANGULAR_ACCELERATION_RMS_RATIO, 1.05),
+    Budget(ANGULAR_ACCELERATION_PEAK_RATIO, 1.1),
 )
 """What a silent profile may change of what the pilot feels: G and rate by so much, and the
 total angular acceleration must not grow by more than what nobody notices. Without the last

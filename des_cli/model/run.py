@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
 
 from des_cli.errors import Complaint, NoSolutionError, NotReleasedError
 from des_cli.model.machine import Joint, Seat
+from des_cli.model.metrics import Metrics
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
@@ -133,11 +135,9 @@ class Run:
         The independent verification.
     violations : tuple of Violation
         Limits, and bounds for the occupant, that the desired or the modified motion breaks.
-    metrics : dict
-        The content of ``metrics.json``.
-    notices : tuple of str
-        One sentence each for the user's attention (a damped inverse, a
-        component bought with another).
+    results : Metrics
+        What was gained and what it cost, with one sentence each for the user's attention
+        (a damped inverse, a component bought with another).
     """
 
     profile: Profile
@@ -150,8 +150,17 @@ class Run:
     after: Response
     checks: tuple[Check, ...]
     violations: tuple[Violation, ...]
-    metrics: dict[str, Any]
-    notices: tuple[str, ...] = ()
+    results: Metrics
+
+    @cached_property
+    def metrics(self) -> dict[str, Any]:
+        """The content of ``metrics.json``."""
+        return self.results.mapping()
+
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """The sentences for the user's attention."""
+        return self.results.notices
 
     def require_release(self) -> None:
         """Raise unless this run may become a command table.

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 if TYPE_CHECKING:
+    from des_cli.model.metric import MetricKey
     from des_cli.model.profile import Control
 
 Means: TypeAlias = Literal["optimum", "report-sweep", "constant-p"]
@@ -81,6 +82,11 @@ class TradePoint:
     iterations: int = 0
     limits_ok: bool | None = None
     message: str = ""
+
+    def fidelity(self, metric: MetricKey) -> float | None:
+        """Return a fidelity metric, None where it is not known or not among the columns."""
+        found: Any = getattr(self, metric, None)
+        return None if found is None else float(found)
 
     @property
     def solved(self) -> bool:

@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.metric import METRICS, STUDY_METRIC, Budget, MetricKey
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_PEAK_RATIO,
+    METRICS,
+    STUDY_METRIC,
+    Budget,
+    MetricKey,
+)
 from des_cli.model.profile import FELT_BUDGETS, Reduction
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.sections import Section
@@ -111,7 +117,7 @@ def defaults_beside(given: Mapping[str, Any]) -> dict[str, Any]:
     if not (zero or weighted or given.get("algorithm") == "report-sweep"):
         if given.get("control") != "scalar":
             return {}
-        peak: MetricKey = "seat_angular_acceleration_peak_ratio"
+        peak: MetricKey = ANGULAR_ACCELERATION_PEAK_RATIO
         return {"budget": tuple(each for each in FELT_BUDGETS if each.metric != peak)}
     return {"budget": (), "control": "per-joint" if zero else "scalar", "ends": "free"}
 

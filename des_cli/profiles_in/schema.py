@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
 from des_cli.model.machine import Joint
-from des_cli.model.metric import MetricKey
+from des_cli.model.metric import STUDY_METRIC, MetricKey
 from des_cli.model.profile import (
     Algorithm,
     Axes,
@@ -277,7 +277,7 @@ Budget = Annotated[
         custom_error_message="{words}",
         custom_error_context={"words": "must be a number, or metrics with a number each"},
     ),
-    Field(description="largest joint_deviation_relative, or fidelity metrics and their limits"),
+    Field(description=f"largest {STUDY_METRIC}, or fidelity metrics and their limits"),
 ]
 
 

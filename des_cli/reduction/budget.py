@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from des_cli.model.metric import METRICS, Budget
+from des_cli.model.metric import ANGULAR_ACCELERATION_PEAK_RATIO, ATTITUDE_ERROR, METRICS, Budget
 from des_cli.model.solution import Solution
 from des_cli.reduction.attitude_rows import AttitudeRows
 from des_cli.reduction.coarse import grids, refine
@@ -24,6 +24,7 @@ from des_cli.reduction.problem import Problem
 from des_cli.reduction.search import TOLERANCE, Search
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.interior import Outcome
+from des_cli.units import percent
 
 REGULARISATION = 2e-3
 """Weight on (1 - u)^2 beside a budget, relative to the mean of the desired motion's
@@ -84,10 +85,10 @@ def _with_budgets(problem: Problem, budgets: Sequence[Budget]) -> Transcription:
     grid = Transcription(problem)
     for budget in budgets:
         most = budget.most * (1.0 - ROOM)
-        if budget.metric == "attitude_error_max_deg":
+        if budget.metric == ATTITUDE_ERROR:
             asked = problem.reference.angle, problem.shortfall
             grid.rows.append(AttitudeRows(problem.chain, *asked, most))
-        elif budget.metric == "seat_angular_acceleration_peak_ratio":
+        elif budget.metric == ANGULAR_ACCELERATION_PEAK_RATIO:
             grid.rows.append(SeatAccelerationRows(grid, most))
         else:
             grid.budgets.append(measure_of(grid, budget.metric, most))
@@ -110,13 +111,15 @@ def _spent(grid: Transcription, budgets: Sequence[Budget], best: Outcome) -> str
     bounds = {type(rows): rows for rows in grid.rows}
     shares = []
     for budget in budgets:
-        if budget.metric == "attitude_error_max_deg":
+        if budget.metric == ATTITUDE_ERROR:
             square = float(np.max(bounds[AttitudeRows].value(best.x)))
-        elif budget.metric == "seat_angular_acceleration_peak_ratio":
+        elif budget.metric == ANGULAR_ACCELERATION_PEAK_RATIO:
             square = float(np.max(bounds[SeatAccelerationRows].value(best.x)))
         else:
             square = next(measures).value(best.x)
-        shares.append(f"{np.sqrt(square):.2%} of the budget on {METRICS[budget.metric].key}")
+        shares.append(
+            f"{percent(float(np.sqrt(square)), 4)} of the budget on {METRICS[budget.metric].key}"
+        )
     sentence = f"{', '.join(shares)} {'is' if len(shares) == 1 else 'are'} spent"
     if not best.usable and any(measure.value(grid.desired) > 1.0 for measure in grid.budgets):
         sentence += "; the nearest motion inside the limits overspends already: allow more"

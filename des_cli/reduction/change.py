@@ -18,28 +18,36 @@ import numpy as np
 
 from des_cli.kinematics.chain import Chain
 from des_cli.kinematics.response import with_shortfall
-from des_cli.model.metric import METRICS, Budget, MetricKey
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_PEAK_RATIO,
+    ANGULAR_ACCELERATION_RMS_RATIO,
+    ATTITUDE_ERROR,
+    FACTOR_DEVIATION,
+    JOINT_DEVIATION_SQUARED,
+    METRICS,
+    SEAT_G_DEVIATION,
+    SEAT_RATE_DEVIATION,
+    Budget,
+    MetricKey,
+)
 from des_cli.model.motion import Record
 from des_cli.model.profile import Reduction
 from des_cli.reduction.fidelity import Deviation
+from des_cli.units import percent
 
 LARGEST_CHANGE = 0.1
 """Share of the record's seat rate, or of an asked G, that may be changed before the
 reduction without a word of the user: what a silent profile may lose of the seat rate in all."""
 
-SHARES: tuple[MetricKey, ...] = ("seat_rate_deviation_relative", "seat_g_deviation_relative")
+SHARES: tuple[MetricKey, ...] = (SEAT_RATE_DEVIATION, SEAT_G_DEVIATION)
 """What of a change is told and bounded: what the pilot feels of it, relative to the record."""
 
 UNSPENT: frozenset[MetricKey] = frozenset(
-    {
-        "seat_angular_acceleration_rms_ratio",
-        "seat_angular_acceleration_peak_ratio",
-        "mean_square_one_minus_p",
-    }
+    {ANGULAR_ACCELERATION_RMS_RATIO, ANGULAR_ACCELERATION_PEAK_RATIO, FACTOR_DEVIATION}
 )
 """Metrics of which a change spends nothing: ratios of sizes, and factors on rates."""
 
-SQUARED: MetricKey = "joint_deviation_relative_squared"
+SQUARED: MetricKey = JOINT_DEVIATION_SQUARED
 """The metric that is a square: its root is what adds up."""
 
 
@@ -96,11 +104,11 @@ class Change:
         if all(shares[metric] <= most for metric, most in allowed.items()):
             return ""
         told = " and ".join(
-            f"{100.0 * shares[metric]:.1f} % of its {METRICS[metric].label}" for metric in SHARES
+            f"{percent(shares[metric])} of its {METRICS[metric].label}" for metric in SHARES
         )
         return (
             f"the record is changed by {told} before any reduction, and "
-            f"{100.0 * min(allowed.values()):g} % is allowed; condition the record, or take "
+            f"{percent(min(allowed.values()), 6)} is allowed; condition the record, or take "
             f"--allow-change {self.enough:g}"
         )
 
@@ -149,7 +157,7 @@ class Change:
         if budget.metric == SQUARED:
             most, spent = np.sqrt([most, spent])
         rest = most - spent
-        if measured and rest > 0.0 and budget.metric != "attitude_error_max_deg":
+        if measured and rest > 0.0 and budget.metric != ATTITUDE_ERROR:
             rest = np.sqrt(rest * (most + spent))
         if METRICS[budget.metric].relative:  # of a motion that is larger by no more than that
             rest /= 1.0 + spent

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from des_cli.errors import Complaint, UsageError
+from des_cli.model.metric import ATTITUDE_ERROR, FACTOR_DEVIATION
 from des_cli.model.profile import Reduction
 
 
@@ -81,13 +82,13 @@ def _of_free_joints(reduction: Reduction) -> Iterator[str]:
             "r2 and tracking weigh factors, which control: free has none of: "
             "add --budget, or --control per-joint (or scalar)"
         )
-    if any(budget.metric == "mean_square_one_minus_p" for budget in reduction.budget):
+    if any(budget.metric == FACTOR_DEVIATION for budget in reduction.budget):
         yield (
-            "mean_square_one_minus_p measures factors, which control: free has none of: "
+            f"{FACTOR_DEVIATION} measures factors, which control: free has none of: "
             "add --control per-joint (or scalar)"
         )
     if _turns_seat(reduction) and any(
-        budget.metric == "attitude_error_max_deg" for budget in reduction.budget
+        budget.metric == ATTITUDE_ERROR for budget in reduction.budget
     ):
         yield "a budget on the attitude is of a seat that stays: leave seat_yaw and seat_pitch out"
     if reduction.jacobian == "adapted":

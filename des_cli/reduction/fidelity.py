@@ -2,13 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
 import numpy as np
 
 from des_cli.kinematics.attitude import geodesic_angle, rotation
 from des_cli.kinematics.chain import Chain, seat_rotation
 from des_cli.kinematics.response import respond_on, with_shortfall
 from des_cli.model.arrays import Floats
-from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION, MetricKey
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_DEVIATION,
+    ANGULAR_ACCELERATION_ERROR,
+    ANGULAR_ACCELERATION_PEAK_RATIO,
+    ANGULAR_ACCELERATION_RMS_RATIO,
+    ATTITUDE_ERROR,
+    FACTOR_DEVIATION,
+    JOINT_DEVIATION,
+    JOINT_DEVIATION_SQUARED,
+    SEAT_G_DEVIATION,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+    UNFELT_ANGULAR_ACCELERATION,
+    MetricKey,
+)
 from des_cli.model.motion import Motion, Shortfall, integrate_sides
 from des_cli.model.response import Response
 
@@ -64,50 +81,15 @@ class Deviation:
 
     def value(self, metric: MetricKey) -> float:
         """Return a metric, in its unit."""
-        match metric:
-            case "joint_deviation_relative":
-                return self._share(
-                    self.modified.angle_sides - self.reference.angle_sides,
-                    self.reference.angle_sides,
-                )
-            case "joint_deviation_relative_squared":
-                return self.value("joint_deviation_relative") ** 2
-            case "mean_square_one_minus_p":
-                return self._mean_square_one_minus_p()
-            case "seat_rate_deviation_relative":
-                return self._share(
-                    self.after.seat_rate - self.before.seat_rate, self.before.seat_rate
-                )
-            case "seat_g_deviation_relative":
-                return self._share(self.after.seat_g - self.before.seat_g, self.before.seat_g)
-            case "seat_g_rms_error_g":
-                return self._rms(self.after.seat_g - self.before.seat_g)
-            case "seat_angular_acceleration_deviation_relative":
-                return self._share(self._turning_error, self.before.seat_angular_acceleration)
-            case "seat_angular_acceleration_rms_error_rad_s2":
-                return self._rms(self._turning_error)
-            case "seat_angular_acceleration_rms_ratio":
-                before, after = (self._rms(turning) for turning in self._turning)
-                return after / max(before, UNFELT_ANGULAR_ACCELERATION)
-            case "seat_angular_acceleration_peak_ratio":
-                before, after = (
-                    float(np.max(np.linalg.norm(turning, axis=-1))) for turning in self._turning
-                )
-                return after / max(before, UNFELT_ANGULAR_ACCELERATION)
-            case "attitude_error_max_deg":
-                one, other = (
-                    seat_rotation(chain, motion.angle)
-                    for chain, motion in zip(
-                        self.chains, (self.reference, self.modified), strict=True
-                    )
-                )
-                if self.shortfall is not None:
-                    one = one @ rotation(self.shortfall.attitude)
-                return float(np.degrees(np.max(geodesic_angle(one, other))))
+        return _VALUES[metric](self)
 
     @property
     def _turning(self) -> tuple[Floats, Floats]:
         return self.before.seat_angular_acceleration, self.after.seat_angular_acceleration
+
+    @property
+    def _g_error(self) -> Floats:
+        return self.after.seat_g - self.before.seat_g
 
     @property
     def _turning_error(self) -> Floats:
@@ -122,9 +104,55 @@ class Deviation:
     def _rms(self, off: Floats) -> float:
         return float(np.sqrt(self._energy(off) / self.reference.step.sum()))
 
-    def _mean_square_one_minus_p(self) -> float:
+    def _joints(self) -> float:
+        reference = self.reference.angle_sides
+        return self._share(self.modified.angle_sides - reference, reference)
+
+    def _seat_rate(self) -> float:
+        return self._share(self.after.seat_rate - self.before.seat_rate, self.before.seat_rate)
+
+    def _turning_rms_ratio(self) -> float:
+        before, after = (self._rms(turning) for turning in self._turning)
+        return after / max(before, UNFELT_ANGULAR_ACCELERATION)
+
+    def _turning_peak_ratio(self) -> float:
+        before, after = (
+            float(np.max(np.linalg.norm(turning, axis=-1))) for turning in self._turning
+        )
+        return after / max(before, UNFELT_ANGULAR_ACCELERATION)
+
+    def _attitude(self) -> float:
+        motions = (self.reference, self.modified)
+        one, other = (
+            seat_rotation(chain, motion.angle)
+            for chain, motion in zip(self.chains, motions, strict=True)
+        )
+        if self.shortfall is not None:
+            one = one @ rotation(self.shortfall.attitude)
+        return float(np.degrees(np.max(geodesic_angle(one, other))))
+
+    def _factors(self) -> float:
         if self.control is None or not self.control.shape[1]:
             return float("nan")
         idle = (1.0 - np.stack([self.control[:-1], self.control[1:]], axis=1)) ** 2
         step = self.reference.step
         return float(integrate_sides(step, idle.mean(axis=2)) / step.sum())
+
+
+_VALUES: Mapping[MetricKey, Callable[[Deviation], float]] = MappingProxyType(
+    {
+        JOINT_DEVIATION: Deviation._joints,
+        JOINT_DEVIATION_SQUARED: lambda off: off._joints() ** 2,
+        FACTOR_DEVIATION: Deviation._factors,
+        SEAT_RATE_DEVIATION: Deviation._seat_rate,
+        SEAT_G_DEVIATION: lambda off: off._share(off._g_error, off.before.seat_g),
+        SEAT_G_ERROR: lambda off: off._rms(off._g_error),
+        ANGULAR_ACCELERATION_DEVIATION: lambda off: off._share(
+            off._turning_error, off.before.seat_angular_acceleration
+        ),
+        ANGULAR_ACCELERATION_ERROR: lambda off: off._rms(off._turning_error),
+        ANGULAR_ACCELERATION_RMS_RATIO: Deviation._turning_rms_ratio,
+        ANGULAR_ACCELERATION_PEAK_RATIO: Deviation._turning_peak_ratio,
+        ATTITUDE_ERROR: Deviation._attitude,
+    }
+)

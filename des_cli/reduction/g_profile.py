@@ -30,6 +30,7 @@ from des_cli.kinematics.twist import SeatForms, seat_forms
 from des_cli.kinematics.washout import seen_turned, washed_rotation
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Joint, JointLimits, Machine
+from des_cli.model.metric import SEAT_G_DEVIATION
 from des_cli.model.motion import DesiredMotion, GOffset, Motion, Shortfall, integrate_sides
 from des_cli.model.profile import GCommand, Profile
 from des_cli.model.response import Response
@@ -132,7 +133,7 @@ def require_makeable(profile: Profile) -> None:
     if most >= gravity:
         return
     nothing = most <= NO_G
-    allowed = allowed_change(profile.reduction, "seat_g_deviation_relative")
+    allowed = allowed_change(profile.reduction, SEAT_G_DEVIATION)
     # The nearest that can be made is gravity itself, in the asked direction.
     if not nothing and _rms(profile.t, gravity - size) <= allowed * _rms(profile.t, size):
         return

@@ -7,10 +7,25 @@ with the motion that the profile asks for, ``Problem.reference``.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import partial
+from types import MappingProxyType
+
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.metric import MetricKey
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_DEVIATION,
+    ANGULAR_ACCELERATION_ERROR,
+    ANGULAR_ACCELERATION_RMS_RATIO,
+    FACTOR_DEVIATION,
+    JOINT_DEVIATION,
+    JOINT_DEVIATION_SQUARED,
+    SEAT_G_DEVIATION,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+    MetricKey,
+)
 from des_cli.reduction.felt_measures import (
     SeatAccelerationDeviation,
     SeatAccelerationSize,
@@ -163,26 +178,25 @@ def mean_at_points(points: Points, half: Floats, sides: Floats) -> tuple[Floats,
 def measure_of(grid: Transcription, metric: MetricKey, budget: float) -> Measure:
     """Return the measure that belongs to a metric of ``fidelity`` and its budget.
 
-    ``attitude_error_max_deg`` and ``seat_angular_acceleration_peak_ratio`` are none: they
-    bound each sample by itself, as ``AttitudeRows`` and ``SeatAccelerationRows``.
+    Those that are a largest value over time are none: they bound each sample by itself, as
+    ``AttitudeRows`` and ``SeatAccelerationRows``.
     """
-    match metric:
-        case "joint_deviation_relative":
-            return JointDeviation(grid, budget)
-        case "joint_deviation_relative_squared":
-            return JointDeviation(grid, float(np.sqrt(budget)))
-        case "mean_square_one_minus_p":
-            return FactorDeviation(grid, budget)
-        case "seat_rate_deviation_relative":
-            return SeatRateDeviation(grid, budget)
-        case "seat_g_deviation_relative":
-            return SeatGDeviation(grid, budget, relative=True)
-        case "seat_g_rms_error_g":
-            return SeatGDeviation(grid, budget, relative=False)
-        case "seat_angular_acceleration_deviation_relative":
-            return SeatAccelerationDeviation(grid, budget, relative=True)
-        case "seat_angular_acceleration_rms_error_rad_s2":
-            return SeatAccelerationDeviation(grid, budget, relative=False)
-        case "seat_angular_acceleration_rms_ratio":
-            return SeatAccelerationSize(grid, budget)
-    raise ValueError(f"{metric} is no integral over the motion")
+    make = _MEASURES.get(metric)
+    if make is None:
+        raise ValueError(f"{metric} is no integral over the motion")
+    return make(grid, budget)
+
+
+_MEASURES: Mapping[MetricKey, Callable[[Transcription, float], Measure]] = MappingProxyType(
+    {
+        JOINT_DEVIATION: JointDeviation,
+        JOINT_DEVIATION_SQUARED: lambda grid, most: JointDeviation(grid, float(np.sqrt(most))),
+        FACTOR_DEVIATION: FactorDeviation,
+        SEAT_RATE_DEVIATION: SeatRateDeviation,
+        SEAT_G_DEVIATION: partial(SeatGDeviation, relative=True),
+        SEAT_G_ERROR: partial(SeatGDeviation, relative=False),
+        ANGULAR_ACCELERATION_DEVIATION: partial(SeatAccelerationDeviation, relative=True),
+        ANGULAR_ACCELERATION_ERROR: partial(SeatAccelerationDeviation, relative=False),
+        ANGULAR_ACCELERATION_RMS_RATIO: SeatAccelerationSize,
+    }
+)

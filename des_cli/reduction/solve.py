@@ -8,7 +8,7 @@ import numpy as np
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.machine import Seat
-from des_cli.model.metric import Budget
+from des_cli.model.metric import FACTOR_DEVIATION, Budget
 from des_cli.model.motion import DesiredMotion, Motion, Record
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution, Status
@@ -133,7 +133,7 @@ def moves_freely(reduction: Reduction) -> bool:
     unless something is asked of the factors themselves.
     """
     of_factors = reduction.jacobian == "adapted" or any(
-        budget.metric == "mean_square_one_minus_p" for budget in reduction.budget
+        budget.metric == FACTOR_DEVIATION for budget in reduction.budget
     )
     per_joint = reduction.control == "per-joint" and bool(reduction.budget) and not of_factors
     return reduction.control == "free" or per_joint

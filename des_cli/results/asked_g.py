@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
-
+from des_cli.model.metrics import AskedG
 from des_cli.model.motion import GOffset
 
 
-def asked_g_metrics(offset: GOffset | None) -> dict[str, Any] | None:
+def asked_g_metrics(offset: GOffset | None) -> AskedG | None:
     """Return the offset of the desired motion from an asked G, None where none is asked."""
     if offset is None:
         return None
-    return {
-        "rms_g": offset.rms,
-        "largest_g": offset.largest,
-        "largest_at_s": offset.largest_at,
-        "onset_asked_g_s": offset.onset_asked,
-        "onset_made_g_s": offset.onset_made,
-        "roll_rate_rms_rad_s": offset.roll_rate_rms,
-        "pitch_rate_rms_rad_s": offset.pitch_rate_rms,
-    }
+    return AskedG(
+        rms_g=offset.rms,
+        largest_g=offset.largest,
+        largest_at_s=offset.largest_at,
+        onset_asked_g_s=offset.onset_asked,
+        onset_made_g_s=offset.onset_made,
+        roll_rate_rms_rad_s=offset.roll_rate_rms,
+        pitch_rate_rms_rad_s=offset.pitch_rate_rms,
+    )
 
 
 def asked_g_sentence(offset: GOffset | None) -> str:

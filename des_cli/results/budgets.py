@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-from des_cli.model.metric import METRICS
-from des_cli.results.reading import number, section
+from des_cli.model.metric import metric_named
+from des_cli.model.metrics import Metrics
+from des_cli.units import percent
 
 _LONGEST = 60
 
@@ -20,48 +19,56 @@ class Spent:
     ----------
     label : str
     spent, most : float
-        In ``unit``: a share is in percent.
+        In the metric's unit.
     unit : str
+        Empty where the metric is of another version, and its unit not known.
+    share : bool
+        Whether it is written in percent.
     """
 
     label: str
     spent: float
     most: float
-    unit: str
+    unit: str = ""
+    share: bool = False
 
     @property
     def allowed(self) -> str:
         """Say what is allowed."""
-        return f"{self.label} ≤ {self.most:g} {self.unit}".rstrip()
+        return f"{self.label} ≤ {self._most}"
+
+    @property
+    def _most(self) -> str:
+        # As it was given.
+        return percent(self.most, 6) if self.share else f"{self.most:g} {self.unit}".rstrip()
 
     def __str__(self) -> str:
-        return f"{self.label} {self.spent:.4g} of {self.most:g} {self.unit}".rstrip()
+        spent = percent(self.spent, 4).removesuffix(" %") if self.share else f"{self.spent:.4g}"
+        return f"{self.label} {spent} of {self._most}"
 
 
-def spent_budgets(metrics: Mapping[str, Any]) -> list[Spent]:
+def spent_budgets(metrics: Metrics) -> list[Spent]:
     """Return the budgets of a run in the order in which they were set.
 
     The metrics may come from a stranger: a budget without numbers is left out.
 
-    >>> metrics = {"solver": {"budget": {"seat_g_rms_error_g": 0.05}},
-    ...            "fidelity": {"seat_g_rms_error_g": 0.049999}}
-    >>> print(*spent_budgets(metrics))
-    G error 0.05 of 0.05 g
+    >>> from des_cli.model.metric import SEAT_G_ERROR
+    >>> from des_cli.model.metrics import Fidelity, SolverFacts
+    >>> solver, fidelity = SolverFacts(budget={SEAT_G_ERROR: 0.05}), Fidelity({SEAT_G_ERROR: 0.049})
+    >>> print(*spent_budgets(Metrics(solver=solver, fidelity=fidelity)))
+    G error 0.049 of 0.05 g
     """
     found = []
-    of = "added.budgets" if section(metrics, "added") else "fidelity"
-    for key in section(metrics, "solver.budget"):
-        most = number(section(metrics, "solver.budget"), key)
-        spent = number(section(metrics, of), key)
-        if most is None or spent is None:
+    values = metrics.added.budgets if metrics.added else metrics.fidelity.metrics
+    for key, most in (metrics.solver.budget or {}).items():
+        spent = values.get(key)
+        if spent is None:
             continue
-        metric = next((each for each in METRICS.values() if each.key == key), None)
+        metric = metric_named(key)
         if metric is None:
-            found.append(Spent(_line(key), spent, most, ""))
-        elif metric.relative:
-            found.append(Spent(metric.label, 100.0 * spent, 100.0 * most, "%"))
+            found.append(Spent(_line(key), spent, most))
         else:
-            found.append(Spent(metric.label, spent, most, metric.unit))
+            found.append(Spent(metric.label, spent, most, metric.unit, metric.relative))
     return found
 
 

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.machine import JOINTS
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+    MetricKey,
+)
+from des_cli.model.metrics import Change, Changes, Executable
 from des_cli.model.motion import DesiredMotion, Motion, Shortfall, integrate_sides
 from des_cli.model.profile import Profile
 from des_cli.reduction.baseline import joint_deviation
@@ -15,8 +21,15 @@ from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.limits import find_violations
 from des_cli.results.coriolis import relative_reduction
 
+_TOLD: tuple[MetricKey, ...] = (
+    SEAT_RATE_DEVIATION,
+    SEAT_G_ERROR,
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
+)
 
-def condition_metrics(profile: Profile, asked: DesiredMotion, target: Motion) -> dict[str, Any]:
+
+def condition_metrics(profile: Profile, asked: DesiredMotion, target: Motion) -> Changes:
     """Return what the steps from the record to what the reduction begins from cost.
 
     Parameters
@@ -29,22 +42,19 @@ def condition_metrics(profile: Profile, asked: DesiredMotion, target: Motion) ->
 
     Returns
     -------
-    dict
-        ``damping`` (rates held at a limit, or damped near the singularity), ``machine``
-        (what of an asked G it cannot make) and ``smoothing``; None for a step that was not
-        taken.
+    Changes
     """
     record, missing = asked.motion, asked.shortfall
     lost = None if missing is None else _cost(profile, record, record, missing)
     by_g = asked.g_offset is not None
-    return {
-        "damping": None if by_g else lost,
-        "machine": lost if by_g else None,
-        "smoothing": None if target is record else _cost(profile, record, target),
-    }
+    return Changes(
+        damping=None if by_g else lost,
+        machine=lost if by_g else None,
+        smoothing=None if target is record else _cost(profile, record, target),
+    )
 
 
-def executable_metrics(profile: Profile, target: Motion, desired: Motion) -> dict[str, Any]:
+def executable_metrics(profile: Profile, target: Motion, desired: Motion) -> Executable:
     """Return what keeping the limits alone cost.
 
     Parameters
@@ -56,16 +66,16 @@ def executable_metrics(profile: Profile, target: Motion, desired: Motion) -> dic
         The same, or the nearest motion inside the limits.
     """
     broken = find_violations(profile.machine, target, "desired")
-    return {
-        "replaced": desired is not target,
-        "breaks_limits": bool(broken),
-        **_cost(profile, target, desired),
-    }
+    return Executable(
+        replaced=desired is not target,
+        breaks_limits=bool(broken),
+        change=_cost(profile, target, desired),
+    )
 
 
 def _cost(
     profile: Profile, before: Motion, after: Motion, missing: Shortfall | None = None
-) -> dict[str, Any]:
+) -> Change:
     """Return what is felt, and done by the joints, of a change from one motion to another."""
     chains = (chain_of(profile.machine, profile.seat),) * 2
     deviation = Deviation.between(before, after, chains, profile.machine.gravity, shortfall=missing)
@@ -74,19 +84,11 @@ def _cost(
         float(integrate_sides(before.step, np.sum(each.coriolis_seat**2, axis=-1)))
         for each in (deviation.before, deviation.after)
     )
-    return {
-        "joint_change_relative": joint_deviation(before, after),
-        "joint_change_max_rad": {
+    return Change(
+        joint_change_relative=joint_deviation(before, after),
+        joint_change_max_rad={
             joint: float(value) for joint, value in zip(JOINTS, moved, strict=True)
         },
-        "coriolis_reduction": relative_reduction(*energies),
-        **{
-            metric: deviation.value(metric)
-            for metric in (
-                "seat_rate_deviation_relative",
-                "seat_g_rms_error_g",
-                "seat_angular_acceleration_rms_error_rad_s2",
-                "attitude_error_max_deg",
-            )
-        },
-    }
+        coriolis_reduction=relative_reduction(*energies),
+        metrics={metric: deviation.value(metric) for metric in _TOLD},
+    )

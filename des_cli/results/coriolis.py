@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.coriolis import COMPONENTS, Component
+from des_cli.model.felt import TurningSizes
+from des_cli.model.metrics import CrossCoupling, Objective, Part
 from des_cli.model.motion import integrate_sides
 from des_cli.model.response import Response
-from des_cli.results.felt import rms
+from des_cli.results.felt import peak, rms
 
 
-def coriolis_metrics(step: Floats, before: Response, after: Response) -> dict[str, Any]:
+def coriolis_metrics(
+    step: Floats, before: Response, after: Response, objective: float | None
+) -> CrossCoupling:
     """Return reduction, RMS and peak of each part of the Coriolis vector.
 
     Parameters
@@ -21,25 +23,16 @@ def coriolis_metrics(step: Floats, before: Response, after: Response) -> dict[st
     step : (n - 1,) array
         [s]
     before, after : Response
-
-    Returns
-    -------
-    dict
-        By the keys of ``COMPONENTS``; reduction is 1 - int after^2 / int before^2,
-        and None where there was nothing to reduce.
+    objective : float or None
+        Reduction of what is weighed.
     """
-    found: dict[str, Any] = {}
+    parts = {}
     for component in COMPONENTS:
         old, new = _part(before, component), _part(after, component)
         energies = (float(integrate_sides(step, side**2)) for side in (old, new))
-        found[component.key] = {
-            "reduction": relative_reduction(*energies),
-            "rms_before_rad_s2": rms(step, old),
-            "rms_after_rad_s2": rms(step, new),
-            "peak_before_rad_s2": float(np.max(np.abs(old))),
-            "peak_after_rad_s2": float(np.max(np.abs(new))),
-        }
-    return found
+        sizes = TurningSizes(rms(step, old), rms(step, new), peak(old), peak(new))
+        parts[component.key] = Part(relative_reduction(*energies), sizes)
+    return CrossCoupling(parts, Objective(objective))
 
 
 def _part(response: Response, component: Component) -> Floats:

@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import get_args
 
 import numpy as np
 
 from des_cli.kinematics.onset import largest_onset
 from des_cli.model.arrays import Floats
+from des_cli.model.felt import (
+    G_AXES,
+    Felt,
+    GAxis,
+    GSizes,
+    RateAxis,
+    RateSizes,
+    TurningAxis,
+    TurningSizes,
+)
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.model.response import Response
 
@@ -16,7 +26,7 @@ WEIGHTLESS = 0.1
 pilot has no down that could tilt, and a small error would turn it right round."""
 
 
-def felt_metrics(motion: Motion, before: Response, after: Response) -> dict[str, Any]:
+def felt_metrics(motion: Motion, before: Response, after: Response) -> Felt:
     """Return sizes of the seat's rate, of its angular acceleration and of the G-vector.
 
     Parameters
@@ -24,27 +34,22 @@ def felt_metrics(motion: Motion, before: Response, after: Response) -> dict[str,
     motion : Motion
         Gives the sample times.
     before, after : Response
-
-    Returns
-    -------
-    dict
-        ``seat_rate`` and ``seat_angular_acceleration`` by component and as
-        ``magnitude``, ``seat_g`` by component.
     """
-    return {
-        "seat_rate": _sizes(motion.step, "pqr", before.seat_rate, after.seat_rate, "rad_s"),
-        "seat_angular_acceleration": _sizes(
-            motion.step,
-            "xyz",
-            before.seat_angular_acceleration,
-            after.seat_angular_acceleration,
-            "rad_s2",
-        ),
-        "seat_g": _g_by_axis(motion, before.seat_g, after.seat_g),
-    }
+    rates = _sizes(motion.step, before.seat_rate, after.seat_rate)
+    turning = _sizes(motion.step, before.seat_angular_acceleration, after.seat_angular_acceleration)
+    return Felt(
+        seat_rate={
+            axis: RateSizes(*each) for axis, each in zip(get_args(RateAxis), rates, strict=True)
+        },
+        seat_angular_acceleration={
+            axis: TurningSizes(*each)
+            for axis, each in zip(get_args(TurningAxis), turning, strict=True)
+        },
+        seat_g=_g_by_axis(motion, before.seat_g, after.seat_g),
+    )
 
 
-def tilt_error(step: Floats, before: Floats, after: Floats) -> dict[str, float | None]:
+def tilt_error(step: Floats, before: Floats, after: Floats) -> tuple[float | None, float | None]:
     """Return the angle between two G-vectors: how far the pilot's down is off.
 
     Parameters
@@ -56,8 +61,8 @@ def tilt_error(step: Floats, before: Floats, after: Floats) -> dict[str, float |
 
     Returns
     -------
-    dict
-        Largest and RMS angle [deg] over the time in which neither vector is
+    largest, rms : float or None
+        [deg], over the time in which neither vector is
         shorter than ``WEIGHTLESS``; None where there is no such time.
     """
     across = np.linalg.norm(np.cross(before, after), axis=-1)
@@ -66,12 +71,9 @@ def tilt_error(step: Floats, before: Floats, after: Floats) -> dict[str, float |
     clear = np.minimum(*sizes) >= WEIGHTLESS
     time = float(integrate_sides(step, clear.astype(float)))
     if not time:
-        return {"tilt_error_max_deg": None, "tilt_error_rms_deg": None}
+        return None, None
     square = float(integrate_sides(step, np.where(clear, angle, 0.0) ** 2))
-    return {
-        "tilt_error_max_deg": float(np.max(angle[clear])),
-        "tilt_error_rms_deg": float(np.sqrt(square / time)),
-    }
+    return float(np.max(angle[clear])), float(np.sqrt(square / time))
 
 
 def rms(step: Floats, sides: Floats) -> float:
@@ -79,55 +81,37 @@ def rms(step: Floats, sides: Floats) -> float:
     return float(np.sqrt(integrate_sides(step, sides**2) / step.sum()))
 
 
-def rms_error(step: Floats, before: Floats, after: Floats) -> float:
-    """Return the RMS length of the difference of (n - 1, 2, 3) vectors on sides."""
-    return rms(step, np.linalg.norm(after - before, axis=-1))
+def peak(sides: Floats) -> float:
+    """Return the largest magnitude of values on sides."""
+    return float(np.max(np.abs(sides)))
 
 
-def relative_error(step: Floats, before: Floats, after: Floats) -> float:
-    """Return sqrt(int |after - before|^2 / int |before|^2) of vectors on sides."""
-    size = float(integrate_sides(step, np.sum(before**2, axis=-1)))
-    off = float(integrate_sides(step, np.sum((after - before) ** 2, axis=-1)))
-    return float(np.sqrt(off / max(size, 1e-300)))
-
-
-def _sizes(
-    step: Floats, names: str, before: Floats, after: Floats, unit: str
-) -> dict[str, dict[str, float]]:
+def _sizes(step: Floats, before: Floats, after: Floats) -> list[tuple[float, float, float, float]]:
     """Return RMS and peak, before and after, of each component and of the magnitude."""
-    found = {}
-    for name, old, new in zip(
-        (*names, "magnitude"), _with_magnitude(before), _with_magnitude(after), strict=True
-    ):
-        found[name] = {
-            f"rms_before_{unit}": rms(step, old),
-            f"rms_after_{unit}": rms(step, new),
-            f"peak_before_{unit}": float(np.max(np.abs(old))),
-            f"peak_after_{unit}": float(np.max(np.abs(new))),
-        }
-    return found
+    return [
+        (rms(step, old), rms(step, new), peak(old), peak(new))
+        for old, new in zip(_with_magnitude(before), _with_magnitude(after), strict=True)
+    ]
 
 
 def _with_magnitude(vectors: Floats) -> tuple[Floats, ...]:
     return (*np.moveaxis(vectors, -1, 0), np.linalg.norm(vectors, axis=-1))
 
 
-def _g_by_axis(motion: Motion, before: Floats, after: Floats) -> dict[str, dict[str, float]]:
-    onsets = {
-        "before": largest_onset(motion.t, before),
-        "after": largest_onset(motion.t, after),
-    }
-    found: dict[str, dict[str, float]] = {}
-    for index, axis in enumerate(("gx", "gy", "gz")):
-        part: dict[str, float] = {}
-        for when, sides in (("before", before[..., index]), ("after", after[..., index])):
-            part |= {
-                f"peak_{when}_g": float(np.max(np.abs(sides))),
-                f"min_{when}_g": float(np.min(sides)),
-                f"max_{when}_g": float(np.max(sides)),
-                f"onset_{when}_g_s": float(onsets[when][index]),
-                f"jump_{when}_g": float(np.max(np.abs(sides[1:, 0] - sides[:-1, 1]), initial=0.0)),
-            }
-        part["rms_error_g"] = rms(motion.step, after[..., index] - before[..., index])
-        found[axis] = part
+def _g_by_axis(motion: Motion, before: Floats, after: Floats) -> dict[GAxis, GSizes]:
+    onsets = (largest_onset(motion.t, before), largest_onset(motion.t, after))
+    found = {}
+    for index, axis in enumerate(G_AXES):
+        old, new = before[..., index], after[..., index]
+        found[axis] = GSizes(
+            *_extremes(old, onsets[0][index]),
+            *_extremes(new, onsets[1][index]),
+            rms_error_g=rms(motion.step, new - old),
+        )
     return found
+
+
+def _extremes(sides: Floats, onset: float) -> tuple[float, float, float, float, float]:
+    """Return peak, least and largest value, onset and largest jump of a component, (n - 1, 2)."""
+    jump = float(np.max(np.abs(sides[1:, 0] - sides[:-1, 1]), initial=0.0))
+    return peak(sides), float(np.min(sides)), float(np.max(sides)), float(onset), jump

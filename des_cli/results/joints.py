@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.machine import JOINTS, Machine
+from des_cli.model.loads import JointLoad
+from des_cli.model.machine import JOINTS, Joint, Machine
 from des_cli.model.motion import Motion
 from des_cli.model.run import Violation
 from des_cli.reduction.limits import jerk_at_samples, measure_peaks
@@ -23,7 +23,7 @@ it there is rounding, or a joint that coasts."""
 
 def joint_metrics(
     machine: Machine, motion: Motion, which: str, violations: tuple[Violation, ...]
-) -> dict[str, Any]:
+) -> dict[Joint, JointLoad]:
     """Return peaks beside limits, for each joint.
 
     Parameters
@@ -47,18 +47,18 @@ def joint_metrics(
     changes = sign_changes(motion.acceleration, IDLE * limit)
     broken = {v.joint for v in violations if v.motion == which}
     return {
-        joint: {
-            "rate_peak_rad_s": float(peaks.rate[j]),
-            "rate_limit_rad_s": finite(machine.limits[j].rate),
-            "acceleration_peak_rad_s2": float(peaks.acceleration[j]),
-            "acceleration_limit_rad_s2": finite(machine.limits[j].acceleration),
-            "jerk_peak_rad_s3": float(jerk[j]),
-            "jerk_limit_rad_s3": finite(machine.limits[j].jerk),
-            "rate_step_rad_s": float(peaks.rate_step[j]),
-            "at_acceleration_limit": float(share[j]),
-            "acceleration_sign_changes": int(changes[j]),
-            "ok": joint not in broken,
-        }
+        joint: JointLoad(
+            rate_peak_rad_s=float(peaks.rate[j]),
+            rate_limit_rad_s=finite(machine.limits[j].rate),
+            acceleration_peak_rad_s2=float(peaks.acceleration[j]),
+            acceleration_limit_rad_s2=finite(machine.limits[j].acceleration),
+            jerk_peak_rad_s3=float(jerk[j]),
+            jerk_limit_rad_s3=finite(machine.limits[j].jerk),
+            rate_step_rad_s=float(peaks.rate_step[j]),
+            at_acceleration_limit=float(share[j]),
+            acceleration_sign_changes=int(changes[j]),
+            ok=joint not in broken,
+        )
         for j, joint in enumerate(JOINTS)
     }
 

@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.arrays import Floats
-from des_cli.model.machine import JOINTS, Seat
+from des_cli.model.loads import Loads
+from des_cli.model.machine import JOINTS, Joint, Seat
 from des_cli.model.metric import METRICS
+from des_cli.model.metrics import (
+    Added,
+    BaselineFacts,
+    Constant,
+    ConstantBaseline,
+    Fidelity,
+    Metrics,
+    ProfileFacts,
+    Singularity,
+    SolverFacts,
+    SweepBaseline,
+)
 from des_cli.model.motion import DesiredMotion, Motion, Record, integrate_sides
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
@@ -23,6 +35,7 @@ from des_cli.results.changes import condition_metrics, executable_metrics
 from des_cli.results.coriolis import coriolis_metrics
 from des_cli.results.felt import felt_metrics, tilt_error
 from des_cli.results.joints import joint_metrics
+from des_cli.results.notices import find_notices
 
 
 @dataclass(frozen=True)
@@ -48,53 +61,47 @@ class Measured:
     baselines: Baselines
 
 
-def measure(run: Measured) -> dict[str, Any]:
-    """Return the metrics of a run, as they stand in ``metrics.json`` beside the notices."""
-    return {
-        "profile": _profile(run.profile),
-        "solver": _solver(run.profile, run.solution),
-        "parameters": _parameters(run),
-        "asked_g": asked_g_metrics(run.asked.g_offset),
-        "coriolis": coriolis_metrics(run.asked.motion.step, run.before, run.after)
-        | {"objective": {"reduction": run.baselines.reduction}},
-        "fidelity": fidelity_metrics(run),
-        "added": added_metrics(run),
-        "felt": felt_metrics(run.asked.motion, run.before, run.after),
-        "changes": condition_metrics(run.profile, run.asked, run.target),
-        "executable": executable_metrics(run.profile, run.target, run.desired),
-        "baseline": {
-            "report_sweep": {
-                "reduction": run.baselines.sweep_reduction,
-                "joint_deviation_relative": run.baselines.sweep_deviation,
-            },
-            "constant_p": {
-                "p": run.baselines.constant_p,
-                "joint_deviation_relative": run.baselines.constant_deviation,
-            },
-        },
-        "limits": {
-            which: joint_metrics(run.profile.machine, motion, which, run.violations)
-            for which, motion in (
-                ("desired", run.asked.motion),
-                ("modified", run.solution.modified),
-            )
-        },
-        "singularity": _singularity(run),
-        "violations": [str(violation) for violation in run.violations],
-    }
+def measure(run: Measured) -> Metrics:
+    """Return the metrics of a run, with what is to be said of them."""
+    modified = run.solution.modified
+    metrics = Metrics(
+        profile=_profile(run.profile),
+        solver=_solver(run.profile, run.solution),
+        parameters=_parameters(run),
+        asked_g=asked_g_metrics(run.asked.g_offset),
+        coriolis=coriolis_metrics(
+            run.asked.motion.step, run.before, run.after, run.baselines.reduction
+        ),
+        fidelity=_fidelity(run),
+        added=_added(run),
+        felt=felt_metrics(run.asked.motion, run.before, run.after),
+        changes=condition_metrics(run.profile, run.asked, run.target),
+        executable=executable_metrics(run.profile, run.target, run.desired),
+        baseline=BaselineFacts(
+            SweepBaseline(run.baselines.sweep_reduction, run.baselines.sweep_deviation),
+            ConstantBaseline(run.baselines.constant_p, run.baselines.constant_deviation),
+        ),
+        limits=Loads(
+            joint_metrics(run.profile.machine, run.asked.motion, "desired", run.violations),
+            joint_metrics(run.profile.machine, modified, "modified", run.violations),
+        ),
+        singularity=_singularity(run.asked),
+        violations=tuple(str(violation) for violation in run.violations),
+    )
+    return replace(metrics, notices=tuple(find_notices(run.profile, run.asked, metrics)))
 
 
-def _profile(profile: Profile) -> dict[str, Any]:
-    return {
-        "name": profile.name,
-        "sha256": profile.sha256,
-        "samples": len(profile.t),
-        "duration_s": float(profile.t[-1] - profile.t[0]),
-        "machine": profile.machine.name,
-    }
+def _profile(profile: Profile) -> ProfileFacts:
+    return ProfileFacts(
+        name=profile.name,
+        sha256=profile.sha256,
+        samples=len(profile.t),
+        duration_s=float(profile.t[-1] - profile.t[0]),
+        machine=profile.machine.name,
+    )
 
 
-def _parameters(run: Measured) -> dict[str, Any] | None:
+def _parameters(run: Measured) -> dict[str, Constant] | None:
     """Return the constants that were found together with the motion, before and after."""
     profile = run.profile
     first, last = run.asked.motion.angle[0], run.solution.modified.angle[0]
@@ -105,42 +112,39 @@ def _parameters(run: Measured) -> dict[str, Any] | None:
         "cab_start": (first[2], last[2]),
     }
     return {
-        name: {
-            "before_deg": float(np.degrees(constants[name][0])),
-            "after_deg": float(np.degrees(constants[name][1])),
-        }
+        name: Constant(*(float(np.degrees(each)) for each in constants[name]))
         for name in profile.reduction.optimise
     } or None
 
 
-def _solver(profile: Profile, solution: Solution) -> dict[str, Any]:
+def _solver(profile: Profile, solution: Solution) -> SolverFacts:
     reduction = profile.reduction
-    return {
-        "method": reduction.method,
-        "algorithm": reduction.algorithm,
-        "control": reduction.control,
-        "axes": reduction.axes,
-        "jacobian": reduction.jacobian,
-        "r1": reduction.r1.tolist(),
-        "r2": reduction.r2.tolist(),
-        "tracking": reduction.tracking.tolist(),
-        "limits": reduction.limits,
-        "ends": reduction.ends,
-        "objective": reduction.objective,
-        "optimise": list(reduction.optimise),
-        "budget": {b.metric: b.most for b in reduction.budget} or None,
-        "allow_change": reduction.allow_change,
-        "status": solution.status,
-        "converged": solution.converged,
-        "iterations": solution.iterations,
-        "cost": solution.cost,
-        "cost_unreduced": solution.cost_unreduced,
-        "optimality": solution.optimality,
-        "message": solution.message,
-    }
+    return SolverFacts(
+        method=reduction.method,
+        algorithm=reduction.algorithm,
+        control=reduction.control,
+        axes=reduction.axes,
+        jacobian=reduction.jacobian,
+        r1=tuple(tuple(row) for row in reduction.r1.tolist()),
+        r2=tuple(reduction.r2.tolist()),
+        tracking=tuple(reduction.tracking.tolist()),
+        limits=reduction.limits,
+        ends=reduction.ends,
+        objective=reduction.objective,
+        optimise=tuple(reduction.optimise),
+        budget={each.metric: each.most for each in reduction.budget} or None,
+        allow_change=reduction.allow_change,
+        status=solution.status,
+        converged=solution.converged,
+        iterations=solution.iterations,
+        cost=solution.cost,
+        cost_unreduced=solution.cost_unreduced,
+        optimality=solution.optimality,
+        message=solution.message,
+    )
 
 
-def fidelity_metrics(run: Measured) -> dict[str, Any]:
+def _fidelity(run: Measured) -> Fidelity:
     """Return what the reduction cost: in the joints, and as the pilot feels it.
 
     Everything is measured against the record: the motion that the profile asks for.
@@ -153,18 +157,24 @@ def fidelity_metrics(run: Measured) -> dict[str, Any]:
     deviation = Deviation(
         record, modified, before, after, chains, run.solution.control, run.asked.shortfall
     )
-    return {
-        **{key: _number(deviation.value(key)) for key in METRICS},
-        "joint_rms_rad": _by_joint(np.sqrt(square / step.sum())),
-        "start_error": _by_joint(modified.angle[0] - record.angle[0], "_rad")
-        | _by_joint(modified.rate_start[0] - record.rate_start[0], "_rad_s"),
-        "end_error_rad": _by_joint(modified.angle[-1] - record.angle[-1]),
-        "end_error_rad_s": _by_joint(modified.rate_end[-1] - record.rate_end[-1]),
-        **tilt_error(step, before.seat_g, after.seat_g),
-    }
+    start_angle = _by_joint(modified.angle[0] - record.angle[0])
+    start_rate = _by_joint(modified.rate_start[0] - record.rate_start[0])
+    tilt_most, tilt_rms = tilt_error(step, before.seat_g, after.seat_g)
+    return Fidelity(
+        metrics={key: _number(deviation.value(key)) for key in METRICS},
+        joint_rms_rad=_by_joint(np.sqrt(square / step.sum())),
+        start_error={
+            **{f"{joint}_rad": value for joint, value in start_angle.items()},
+            **{f"{joint}_rad_s": value for joint, value in start_rate.items()},
+        },
+        end_error_rad=_by_joint(modified.angle[-1] - record.angle[-1]),
+        end_error_rad_s=_by_joint(modified.rate_end[-1] - record.rate_end[-1]),
+        tilt_error_max_deg=tilt_most,
+        tilt_error_rms_deg=tilt_rms,
+    )
 
 
-def added_metrics(run: Measured) -> dict[str, Any] | None:
+def _added(run: Measured) -> Added | None:
     """Return what the reduction adds to what was changed of the record, and to its ride.
 
     None where nothing was changed: then ``fidelity`` and ``felt`` tell all of it.
@@ -181,13 +191,13 @@ def added_metrics(run: Measured) -> dict[str, Any] | None:
         run.solution.control,
         held.shortfall,
     )
-    return {
-        "budgets": {
+    return Added(
+        budgets={
             budget.metric: _number(deviation.value(budget.metric))
             for budget in run.profile.reduction.budget
         },
-        "felt": felt_metrics(held.motion, deviation.before, run.after),
-    }
+        felt=felt_metrics(held.motion, deviation.before, run.after),
+    )
 
 
 def _number(value: float) -> float | None:
@@ -195,21 +205,17 @@ def _number(value: float) -> float | None:
     return None if np.isnan(value) else value
 
 
-def _by_joint(values: Floats, unit: str = "") -> dict[str, float]:
-    return {f"{joint}{unit}": float(value) for joint, value in zip(JOINTS, values, strict=True)}
+def _by_joint(values: Floats) -> dict[Joint, float]:
+    return {joint: float(value) for joint, value in zip(JOINTS, values, strict=True)}
 
 
-def _singularity(run: Measured) -> dict[str, Any]:
-    desired = run.asked
-    found: dict[str, Any] = {
-        "min_abs_cos_fork": float(np.min(np.abs(np.cos(desired.motion.angle[:, 1])))),
-        "min_singular_value": float(np.min(desired.singular_value)),
-        "damped_samples": int(np.sum(desired.damped)),
-        "max_residual_rad_s": float(np.max(np.linalg.norm(desired.residual, axis=1))),
-        "integration_error_max_deg": float(np.degrees(desired.attitude_error)),
-    }
-    if desired.recorded_attitude_error is not None:
-        found["recorded_attitude_error_max_deg"] = float(
-            np.degrees(desired.recorded_attitude_error)
-        )
-    return found
+def _singularity(asked: DesiredMotion) -> Singularity:
+    recorded = asked.recorded_attitude_error
+    return Singularity(
+        min_abs_cos_fork=float(np.min(np.abs(np.cos(asked.motion.angle[:, 1])))),
+        min_singular_value=float(np.min(asked.singular_value)),
+        damped_samples=int(np.sum(asked.damped)),
+        max_residual_rad_s=float(np.max(np.linalg.norm(asked.residual, axis=1))),
+        integration_error_max_deg=float(np.degrees(asked.attitude_error)),
+        recorded_attitude_error_max_deg=None if recorded is None else float(np.degrees(recorded)),
+    )

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from des_cli.kinematics.noise import suggest_smoothing
 from des_cli.model.coriolis import COMPONENTS
-from des_cli.model.metric import METRICS, MetricKey
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_DEVIATION,
+    ANGULAR_ACCELERATION_ERROR,
+    FACTOR_DEVIATION,
+    JOINT_DEVIATION,
+    SEAT_G_DEVIATION,
+    SEAT_RATE_DEVIATION,
+    label_of,
+)
+from des_cli.model.metrics import Metrics
 from des_cli.model.motion import DesiredMotion
 from des_cli.model.profile import Profile
 from des_cli.results.asked_g import asked_g_sentence
 from des_cli.results.worse import find_worse
+from des_cli.units import percent
 
 BOUGHT = 0.05
 """Relative growth of a Coriolis component's energy that is worth a sentence."""
@@ -22,10 +30,10 @@ FELT = 0.25
 
 RESTRAINING = frozenset(
     {
-        "mean_square_one_minus_p",
-        "seat_rate_deviation_relative",
-        "seat_angular_acceleration_deviation_relative",
-        "seat_angular_acceleration_rms_error_rad_s2",
+        FACTOR_DEVIATION,
+        SEAT_RATE_DEVIATION,
+        ANGULAR_ACCELERATION_DEVIATION,
+        ANGULAR_ACCELERATION_ERROR,
     }
 )
 """Metrics whose budget holds back rates or accelerations. Without one of them nothing in
@@ -39,7 +47,7 @@ NOTICEABLE = 1e-3
 """Change of a desired angle [rad] by the limits that is worth a sentence."""
 
 
-def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
+def find_notices(profile: Profile, asked: DesiredMotion, metrics: Metrics) -> list[str]:
     """Return the sentences of a run.
 
     Parameters
@@ -47,8 +55,8 @@ def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]
     profile : Profile
     asked : DesiredMotion
         What the profile asks for.
-    metrics : dict
-        As ``metrics.measure`` returns them.
+    metrics : Metrics
+        All of them but the sentences.
 
     Returns
     -------
@@ -75,8 +83,8 @@ def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]
     return [sentence for sentence in found if sentence]
 
 
-def _usable(metrics: dict[str, Any]) -> bool:
-    return metrics["solver"]["status"] in ("converged", "acceptable")
+def _usable(metrics: Metrics) -> bool:
+    return metrics.solver.status in ("converged", "acceptable")
 
 
 def _damped(asked: DesiredMotion) -> str:
@@ -91,14 +99,17 @@ def _damped(asked: DesiredMotion) -> str:
     )
 
 
-def _replaced(metrics: dict[str, Any]) -> str:
-    change = metrics["executable"]["joint_change_max_rad"]
-    moved = [f"{joint} {value:.3g} rad" for joint, value in change.items() if value > NOTICEABLE]
+def _replaced(metrics: Metrics) -> str:
+    moved = [
+        f"{joint} {value:.3g} rad"
+        for joint, value in metrics.executable.change.joint_change_max_rad.items()
+        if value is not None and value > NOTICEABLE
+    ]
     if not moved:
         return ""
     why = (
         "breaks limits; it was replaced by the nearest one inside them"
-        if metrics["executable"]["breaks_limits"]
+        if metrics.executable.breaks_limits
         else "was made consistent: its angles are the integrals of its rates"
     )
     return (
@@ -107,28 +118,27 @@ def _replaced(metrics: dict[str, Any]) -> str:
     )
 
 
-def _bought(metrics: dict[str, Any]) -> str:
-    parts = metrics["coriolis"]
-    objective = parts["objective"]["reduction"]
+def _bought(metrics: Metrics) -> str:
+    objective = metrics.coriolis.objective.reduction
     if not _usable(metrics):
         return ""
     if objective is not None and objective < 0.0:
         return (
-            f"the cross-coupling that r1 weighs grew by {-100 * objective:.3g} %: "
-            "nothing was gained"
+            f"the cross-coupling that r1 weighs grew by {percent(-objective)}: nothing was gained"
         )
     # Of components in the study's axes the pilot feels none: only who weighs them hears of them.
-    axes = metrics["solver"].get("axes")
+    axes = metrics.solver.axes
     grown = [
-        f"{component.label} grew by {-100 * reduction:.0f} %"
+        f"{component.label} grew by {percent(-reduction)}"
         for component in COMPONENTS
         if axes != "seat" or component.axes != "report"
-        if (reduction := parts[component.key]["reduction"]) is not None and reduction < -BOUGHT
+        if (reduction := metrics.coriolis.reduction(component.key)) is not None
+        and reduction < -BOUGHT
     ]
     return f"one component was bought with another: {', '.join(grown)}" if grown else ""
 
 
-def _worse(metrics: dict[str, Any]) -> str:
+def _worse(metrics: Metrics) -> str:
     """Say what a pilot would rather not have, with all its numbers."""
     found = find_worse(metrics) if _usable(metrics) else []
     if not found:
@@ -140,36 +150,35 @@ def _worse(metrics: dict[str, Any]) -> str:
     )
 
 
-def _felt(metrics: dict[str, Any]) -> str:
+def _felt(metrics: Metrics) -> str:
     """Say that a small change of angles is not a small change of what is felt."""
-    fidelity = metrics["fidelity"]
-    budget = metrics["solver"].get("budget") or {}
-    measures: tuple[MetricKey, ...] = ("seat_rate_deviation_relative", "seat_g_deviation_relative")
-    others = {key: fidelity[key] for key in measures if key not in budget}
-    off = {key: value for key, value in others.items() if value is not None and value >= FELT}
+    budget = metrics.solver.budget or {}
+    off = {
+        key: value
+        for key in (SEAT_RATE_DEVIATION, SEAT_G_DEVIATION)
+        if key not in budget and (value := metrics.fidelity.value(key) or 0.0) >= FELT
+    }
     if not _usable(metrics) or not off:
         return ""
-    said = ", ".join(
-        f"{METRICS[key].label} is off by {100 * value:.0f} %" for key, value in off.items()
-    )
-    joints = 100 * fidelity["joint_deviation_relative"]
+    said = ", ".join(f"{label_of(key)} is off by {percent(value)}" for key, value in off.items())
+    joints = percent(metrics.fidelity.value(JOINT_DEVIATION) or 0.0)
     return (
-        f"what the pilot feels is changed: {said}, at {joints:.1f} % in the joints; "
+        f"what the pilot feels is changed: {said}, at {joints} in the joints; "
         f"a budget on {' or '.join(off)} bounds that"
     )
 
 
-def _ill_posed(metrics: dict[str, Any]) -> str:
+def _ill_posed(metrics: Metrics) -> str:
     """Say that the budgets leave the rates free, and how the commands look for it."""
-    solver = metrics["solver"]
-    budget = solver.get("budget") or {}
-    posed = solver.get("control") == "scalar" or solver.get("objective", "coriolis") != "coriolis"
+    solver = metrics.solver
+    budget = solver.budget or {}
+    posed = solver.control == "scalar" or solver.objective not in (None, "coriolis")
     if not budget or RESTRAINING & set(budget) or posed or not _usable(metrics):
         return ""
-    labels = " and ".join(METRICS[key].label for key in budget)
+    labels = " and ".join(label_of(key) for key in budget)
     driven = {
-        joint: part["acceleration_sign_changes"]
-        for joint, part in metrics["limits"]["modified"].items()
+        joint: load.acceleration_sign_changes or 0
+        for joint, load in metrics.limits.modified.items()
     }
     joint = max(driven, key=lambda name: driven[name])
     how = (
@@ -179,17 +188,17 @@ def _ill_posed(metrics: dict[str, Any]) -> str:
     )
     return (
         f"a budget on {labels} alone is ill-posed: {how}; "
-        "add a budget on seat_rate_deviation_relative, or objective: blend"
+        f"add a budget on {SEAT_RATE_DEVIATION}, or objective: blend"
     )
 
 
-def _nothing(metrics: dict[str, Any]) -> str:
-    if metrics["coriolis"]["vector"]["reduction"] is not None:
+def _nothing(metrics: Metrics) -> str:
+    if metrics.coriolis.reduction("vector") is not None:
         return ""
     return "the desired motion makes no cross-coupling: there is nothing to reduce"
 
 
-def _short(metrics: dict[str, Any]) -> str:
-    if metrics["solver"]["status"] != "acceptable":
+def _short(metrics: Metrics) -> str:
+    if metrics.solver.status != "acceptable":
         return ""
-    return f"acceptable, not converged: {metrics['solver']['message']}"
+    return f"acceptable, not converged: {metrics.solver.message}"

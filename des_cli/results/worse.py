@@ -9,11 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from types import MappingProxyType
+from typing import Literal, TypeAlias
 
+from des_cli.model.felt import G_AXES, BeforeAfter, Felt, GAxis
 from des_cli.model.machine import JOINTS
-from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION
-from des_cli.results.reading import lookup, number, section
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_PEAK_RATIO,
+    ANGULAR_ACCELERATION_RMS_RATIO,
+    SEAT_G_ERROR,
+    UNFELT_ANGULAR_ACCELERATION,
+)
+from des_cli.model.metrics import Metrics
 
 SHARE = 0.05
 """Relative growth of the total angular acceleration's rms, or of the G onset, that is told:
@@ -36,11 +43,16 @@ LEAST_START_ANGLE = 0.01
 """Difference of a joint's angle at the start [rad] that is told, of a joint whose start
 is not among the constants to be found: half a degree, more than rounding by far."""
 
-AXES = ("gx", "gy", "gz")
+_SMALLER = f"a smaller budget on {SEAT_G_ERROR}"
 
-_SMALLER = "a smaller budget on seat_g_rms_error_g"
+FeltNumber: TypeAlias = Literal[
+    "turning rms", "turning peak", "gy peak", "gx onset", "gy onset", "gz onset", "start"
+]
+"""What of the ride may be told to have got worse."""
 
-_TOTAL = "felt.seat_angular_acceleration.magnitude"
+_ONSETS: Mapping[GAxis, FeltNumber] = MappingProxyType(
+    {"gx": "gx onset", "gy": "gy onset", "gz": "gz onset"}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,28 +64,28 @@ class Worse:
     label : str
     text : str
         Its numbers, with their unit.
-    paths : tuple of str
-        Where the worse numbers stand in the metrics.
+    numbers : tuple of FeltNumber
+        Which they are.
     cure : str
         What bounds it, as a part of a sentence.
     """
 
     label: str
     text: str
-    paths: tuple[str, ...] = ()
+    numbers: tuple[FeltNumber, ...] = ()
     cure: str = ""
 
     def __str__(self) -> str:
         return f"{self.label} {self.text}"
 
 
-def find_worse(metrics: Mapping[str, Any]) -> list[Worse]:
+def find_worse(metrics: Metrics) -> list[Worse]:
     """Return what of the ride got worse by more than its threshold.
 
     Parameters
     ----------
-    metrics : mapping
-        The content of ``metrics.json``; what is not known is not told.
+    metrics : Metrics
+        What is not known of them is not told.
 
     Returns
     -------
@@ -81,18 +93,16 @@ def find_worse(metrics: Mapping[str, Any]) -> list[Worse]:
         Of the total angular acceleration, the peak of Gy, the G onset and the start,
         in this order.
     """
-    # A ride is compared with the one that was reduced: the noise of a record is no ride.
-    felt = section(metrics, "added.felt") or section(metrics, "felt")
-    compared = {**metrics, "felt": felt}
-    return [*_angular(compared), *_sideways(compared), *_onset(compared), *_start(metrics)]
+    ride = metrics.ride
+    return [*_angular(ride), *_sideways(ride), *_onset(ride), *_start(metrics)]
 
 
-def worse_words(metrics: Mapping[str, Any], *, short: bool = False) -> str:
+def worse_words(metrics: Metrics, *, short: bool = False) -> str:
     """Return what got worse in one line, empty where nothing did.
 
     Parameters
     ----------
-    metrics : mapping
+    metrics : Metrics
     short : bool
         Give the first measure alone, for a line among many.
     """
@@ -101,71 +111,76 @@ def worse_words(metrics: Mapping[str, Any], *, short: bool = False) -> str:
     return f"worse to sit in: {told}" if told else ""
 
 
-def worse_paths(metrics: Mapping[str, Any]) -> frozenset[str]:
-    """Return where the numbers stand in the metrics that got worse."""
-    return frozenset(path for each in find_worse(metrics) for path in each.paths)
+def worse_numbers(metrics: Metrics) -> frozenset[FeltNumber]:
+    """Return which numbers of the ride got worse."""
+    return frozenset(number for each in find_worse(metrics) for number in each.numbers)
 
 
-def _grew(before: float, after: float, least: float, share: float = SHARE) -> bool:
+def _grew(pair: BeforeAfter, least: float, share: float = SHARE) -> bool:
+    if pair.known is None:
+        return False
+    before, after = pair.known
     return after - before > max(share * before, least)
 
 
-def _angular(metrics: Mapping[str, Any]) -> list[Worse]:
-    texts, paths = [], []
-    for kind, share in (("rms", SHARE), ("peak", PEAK_SHARE)):
-        path = f"{_TOTAL}.{kind}_after_rad_s2"
-        before, after = number(metrics, f"{_TOTAL}.{kind}_before_rad_s2"), number(metrics, path)
-        if before is None or after is None:
-            continue
-        if _grew(before, after, UNFELT_ANGULAR_ACCELERATION, share):
-            numbers = f"{before:.3g} -> {after:.3g} rad/s²"
-            texts.append(f"{numbers} rms" if kind == "rms" else f"peak {numbers}")
-            paths.append(path)
-    label = "total angular acceleration"
-    kinds = [kind for kind in ("rms", "peak") if any(f".{kind}_" in path for path in paths)]
-    cure = "a budget on " + " and ".join(
-        f"seat_angular_acceleration_{kind}_ratio" for kind in kinds
-    )
-    return [Worse(label, ", ".join(texts), tuple(paths), cure)] if texts else []
-
-
-def _sideways(metrics: Mapping[str, Any]) -> list[Worse]:
-    path = "felt.seat_g.gy.peak_after_g"
-    before, after = number(metrics, "felt.seat_g.gy.peak_before_g"), number(metrics, path)
-    if before is None or after is None or after - before <= LEAST_GY:
+def _angular(felt: Felt) -> list[Worse]:
+    turning = felt.turning
+    texts: list[str] = []
+    numbers: list[FeltNumber] = []
+    cures = []
+    if _grew(turning.rms, UNFELT_ANGULAR_ACCELERATION):
+        texts.append(f"{_from_to(turning.rms, 3)} rad/s² rms")
+        numbers.append("turning rms")
+        cures.append(ANGULAR_ACCELERATION_RMS_RATIO)
+    if _grew(turning.peak, UNFELT_ANGULAR_ACCELERATION, PEAK_SHARE):
+        texts.append(f"peak {_from_to(turning.peak, 3)} rad/s²")
+        numbers.append("turning peak")
+        cures.append(ANGULAR_ACCELERATION_PEAK_RATIO)
+    if not texts:
         return []
-    return [Worse("peak Gy", f"{before:.2g} -> {after:.2g} g", (path,), "the machine's gy_g")]
+    label, cure = "total angular acceleration", f"a budget on {' and '.join(cures)}"
+    return [Worse(label, ", ".join(texts), tuple(numbers), cure)]
 
 
-def _onset(metrics: Mapping[str, Any]) -> list[Worse]:
+def _sideways(felt: Felt) -> list[Worse]:
+    peak = felt.seat_g["gy"].peak
+    if not _grew(peak, LEAST_GY, share=0.0):
+        return []
+    return [Worse("peak Gy", f"{_from_to(peak, 2)} g", ("gy peak",), "the machine's gy_g")]
+
+
+def _onset(felt: Felt) -> list[Worse]:
     """Return the onset of the axis on which it grew most."""
-    grown = []
-    for axis in AXES:
-        path = f"felt.seat_g.{axis}.onset_after_g_s"
-        before = number(metrics, f"felt.seat_g.{axis}.onset_before_g_s")
-        after = number(metrics, path)
-        if before is not None and after is not None and _grew(before, after, LEAST_ONSET):
-            grown.append((after - before, axis, f"{before:.2g} -> {after:.2g} g/s", path))
+    onsets = {axis: felt.seat_g[axis].onset for axis in G_AXES}
+    grown = {
+        axis: pair.known[1] - pair.known[0]
+        for axis, pair in onsets.items()
+        if pair.known is not None and _grew(pair, LEAST_ONSET)
+    }
     if not grown:
         return []
-    _, axis, text, _ = max(grown)
-    paths = tuple(path for *_, path in grown)
-    largest = max(number(metrics, f"felt.seat_g.{each}.onset_before_g_s") or 0.0 for each in AXES)
-    after = number(metrics, f"felt.seat_g.{axis}.onset_after_g_s") or 0.0
+    most = max(grown, key=lambda axis: (grown[axis], axis))
+    text = f"{_from_to(onsets[most], 2)} g/s"
+    numbers = tuple(_ONSETS[axis] for axis in grown)
+    largest = max(pair.before or 0.0 for pair in onsets.values())
     # A bound holds for every axis: below the onset of the profile itself it cannot be kept.
-    cure = "the machine's g_onset_g_s" if after > largest else _SMALLER
-    return [Worse(f"{axis.capitalize()} onset", text, paths, cure)]
+    cure = "the machine's g_onset_g_s" if (onsets[most].after or 0.0) > largest else _SMALLER
+    return [Worse(f"{most.capitalize()} onset", text, numbers, cure)]
 
 
-def _start(metrics: Mapping[str, Any]) -> list[Worse]:
-    optimise = lookup(metrics, "solver.optimise")
-    freed = optimise if isinstance(optimise, list) else []
+def _from_to(pair: BeforeAfter, digits: int) -> str:
+    return f"{pair.before:.{digits}g} -> {pair.after:.{digits}g}"
+
+
+def _start(metrics: Metrics) -> list[Worse]:
+    angles, rates = metrics.fidelity.offset("start")
     off = []
     for joint in JOINTS:
-        angle = number(metrics, f"fidelity.start_error.{joint}_rad") or 0.0
-        rate = number(metrics, f"fidelity.start_error.{joint}_rad_s") or 0.0
-        if abs(angle) > LEAST_START_ANGLE and f"{joint}_start" not in freed:
+        angle, rate = angles.get(joint) or 0.0, rates.get(joint) or 0.0
+        freed = f"{joint}_start" in metrics.solver.optimise
+        if abs(angle) > LEAST_START_ANGLE and not freed:
             off.append(f"{joint} {angle:+.2g} rad")
         if abs(rate) > LEAST_START_RATE:
             off.append(f"{joint} {rate:+.2g} rad/s")
-    return [Worse("start off by", ", ".join(off), cure="ends: match-start")] if off else []
+    cure = "ends: match-start"
+    return [Worse("start off by", ", ".join(off), ("start",), cure)] if off else []

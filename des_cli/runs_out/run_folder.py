@@ -200,7 +200,7 @@ def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
         TRAJECTORY: encode_table(trajectory, "parquet"),
         METRICS: encode_json(run.metrics),
     }
-    if run.metrics.get("parameters"):
+    if run.results.parameters:
         outputs[PROFILE] = encode_run_profile(run, COMMANDS)
     if plots:
         # Imported here: matplotlib costs half a second that --no-plots does not need.

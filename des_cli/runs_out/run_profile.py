@@ -46,8 +46,8 @@ def encode_run_profile(run: Run, table: str) -> bytes:
 
 
 def _found(run: Run) -> list[str]:
-    parameters = run.metrics.get("parameters") or {}
     return [
-        f"# {name}: {np.round(each['before_deg'], 3):g} -> {np.round(each['after_deg'], 3):g} deg"
-        for name, each in parameters.items()
+        f"# {name}: {np.round(before, 3):g} -> {np.round(after, 3):g} deg"
+        for name, each in (run.results.parameters or {}).items()
+        for before, after in [each.angle.known or (np.nan, np.nan)]
     ]

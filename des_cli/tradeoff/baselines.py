@@ -115,9 +115,9 @@ class _Comparison:
             (chain, chain),
             shortfall=self.asked.shortfall,
         )
-        objective = {"reduction": objective_reduction(self.problem, motion)}
+        objective = objective_reduction(self.problem, motion)
         return numbers_of(
-            coriolis_metrics(record.step, self.before, after) | {"objective": objective},
+            coriolis_metrics(record.step, self.before, after, objective),
             {metric: deviation.value(metric) for metric in COSTS},
             felt_metrics(record, self.before, after),
             joint_metrics(

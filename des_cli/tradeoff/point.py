@@ -9,7 +9,19 @@ from typing import Any
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.metric import MetricKey
+from des_cli.model.coriolis import ComponentKey
+from des_cli.model.felt import Felt
+from des_cli.model.loads import JointLoad
+from des_cli.model.machine import Joint
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
+    JOINT_DEVIATION,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+    MetricKey,
+)
+from des_cli.model.metrics import CrossCoupling
 from des_cli.model.profile import Profile
 from des_cli.model.run import Run
 from des_cli.model.solution import Iteration
@@ -17,15 +29,15 @@ from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import SOLVED, TradePoint
 from des_cli.pipeline import Prepared, reduce_profile
 
-PARTS = ("objective", "bb3", "vector", "seat_x", "seat_y", "seat_z")
-"""Parts of the Coriolis vector whose reduction a point has."""
+PARTS: tuple[ComponentKey, ...] = ("bb3", "vector", "seat_x", "seat_y", "seat_z")
+"""Parts of the Coriolis vector whose reduction a point has, beside the objective's."""
 
 COSTS: tuple[MetricKey, ...] = (
-    "joint_deviation_relative",
-    "seat_rate_deviation_relative",
-    "seat_g_rms_error_g",
-    "seat_angular_acceleration_rms_error_rad_s2",
-    "attitude_error_max_deg",
+    JOINT_DEVIATION,
+    SEAT_RATE_DEVIATION,
+    SEAT_G_ERROR,
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
 )
 """Fidelity metrics that a point has."""
 
@@ -73,10 +85,9 @@ def trade_point(
     )
     if run.solution.status not in SOLVED:
         return point
-    metrics = run.metrics
-    measures = numbers_of(
-        metrics["coriolis"], metrics["fidelity"], metrics["felt"], metrics["limits"]["modified"]
-    )
+    metrics = run.results
+    fidelity = {metric: metrics.fidelity.value(metric) for metric in COSTS}
+    measures = numbers_of(metrics.coriolis, fidelity, metrics.felt, metrics.limits.modified)
     return replace(point, cost=run.solution.cost, **measures)
 
 
@@ -86,30 +97,32 @@ def mean_weight(r2: Floats) -> float:
 
 
 def numbers_of(
-    coriolis: Mapping[str, Any],
-    fidelity: Mapping[str, Any],
-    felt: Mapping[str, Any],
-    joints: Mapping[str, Any],
+    coriolis: CrossCoupling,
+    fidelity: Mapping[MetricKey, float | None],
+    felt: Felt,
+    modified: Mapping[Joint, JointLoad],
 ) -> dict[str, Any]:
     """Return the numbers of a point, by its fields.
 
     Parameters
     ----------
-    coriolis, fidelity, felt : mapping
+    coriolis, felt
         Sections of the metrics.
-    joints : mapping
-        The section ``limits`` of the modified motion.
+    fidelity : mapping
+        By ``COSTS``.
+    modified : mapping
+        How the modified motion loads each joint.
     """
-    turning = felt["seat_angular_acceleration"]["magnitude"]
+    turning = felt.turning
     return {
-        **{f"{part}_reduction": coriolis[part]["reduction"] for part in PARTS},
+        "objective_reduction": coriolis.objective.reduction,
+        **{f"{part}_reduction": coriolis.reduction(part) for part in PARTS},
         **{key: fidelity[key] for key in COSTS},
-        **{
-            f"seat_angular_acceleration_{kind}{column}_rad_s2": turning[f"{kind}_{when}_rad_s2"]
-            for kind in ("rms", "peak")
-            for column, when in (("_before", "before"), ("", "after"))
-        },
-        "limits_ok": all(joint["ok"] for joint in joints.values()),
+        "seat_angular_acceleration_rms_before_rad_s2": turning.rms.before,
+        "seat_angular_acceleration_rms_rad_s2": turning.rms.after,
+        "seat_angular_acceleration_peak_before_rad_s2": turning.peak.before,
+        "seat_angular_acceleration_peak_rad_s2": turning.peak.after,
+        "limits_ok": all(load.ok for load in modified.values()),
     }
 
 

@@ -9,7 +9,21 @@ from types import MappingProxyType
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION, Budget
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_DEVIATION,
+    ANGULAR_ACCELERATION_ERROR,
+    ANGULAR_ACCELERATION_PEAK_RATIO,
+    ANGULAR_ACCELERATION_RMS_RATIO,
+    ATTITUDE_ERROR,
+    FACTOR_DEVIATION,
+    JOINT_DEVIATION,
+    JOINT_DEVIATION_SQUARED,
+    SEAT_G_DEVIATION,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+    UNFELT_ANGULAR_ACCELERATION,
+    Budget,
+)
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.verify.claim import Claim
@@ -29,7 +43,7 @@ TORN = 0.05
 """Largest difference of a mean rate by positions from that by rates, over the joint's
 largest rate, that a quadrature makes; more is a jump."""
 
-RATIOS = frozenset({"seat_angular_acceleration_rms_ratio", "seat_angular_acceleration_peak_ratio"})
+RATIOS = frozenset({ANGULAR_ACCELERATION_RMS_RATIO, ANGULAR_ACCELERATION_PEAK_RATIO})
 """Metrics that compare a ride with what was reduced: the noise of a record has no bearing."""
 
 NOTHING = 1e-300
@@ -60,18 +74,18 @@ class Integral:
 
 INTEGRALS: Mapping[str, Integral] = MappingProxyType(
     {
-        "joint_deviation_relative": Integral("angle", relative=True),
-        "joint_deviation_relative_squared": Integral("angle", relative=True, squared=True),
-        "seat_rate_deviation_relative": Integral("rate", relative=True),
-        "seat_g_deviation_relative": Integral("g", relative=True),
-        "seat_g_rms_error_g": Integral("g", relative=False),
-        "seat_angular_acceleration_deviation_relative": Integral("turning", relative=True),
-        "seat_angular_acceleration_rms_error_rad_s2": Integral("turning", relative=False),
-        "seat_angular_acceleration_rms_ratio": Integral("turning", relative=True, deviation=False),
+        JOINT_DEVIATION: Integral("angle", relative=True),
+        JOINT_DEVIATION_SQUARED: Integral("angle", relative=True, squared=True),
+        SEAT_RATE_DEVIATION: Integral("rate", relative=True),
+        SEAT_G_DEVIATION: Integral("g", relative=True),
+        SEAT_G_ERROR: Integral("g", relative=False),
+        ANGULAR_ACCELERATION_DEVIATION: Integral("turning", relative=True),
+        ANGULAR_ACCELERATION_ERROR: Integral("turning", relative=False),
+        ANGULAR_ACCELERATION_RMS_RATIO: Integral("turning", relative=True, deviation=False),
     }
 )
 
-AT_SAMPLES = frozenset({"attitude_error_max_deg", "seat_angular_acceleration_peak_ratio"})
+AT_SAMPLES = frozenset({ATTITUDE_ERROR, ANGULAR_ACCELERATION_PEAK_RATIO})
 """Metrics that are a largest value over time."""
 
 
@@ -132,7 +146,7 @@ def measure(claim: Claim, metric: str, felt: Felt) -> float:
     """
     if metric in AT_SAMPLES:
         return float(np.max(at_states(claim, metric, felt)))
-    if metric == "mean_square_one_minus_p":
+    if metric == FACTOR_DEVIATION:
         return mean_square_one_minus_p(claim, claim.solution.control)
     square = float(claim.weight @ integrand(metric, felt, claim.before)) / size(claim, metric)
     return square if INTEGRALS[metric].squared else float(np.sqrt(square))
@@ -159,7 +173,7 @@ def size(claim: Claim, metric: str) -> float:
 
 def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
     """Return the values that a metric is the largest of, (m,)."""
-    if metric == "attitude_error_max_deg":
+    if metric == ATTITUDE_ERROR:
         chord = np.sqrt(np.sum((felt.rotation - claim.before.rotation) ** 2, axis=(0, 1)) / 8.0)
         return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(chord, 1.0))))
     before, after = (np.sqrt(np.sum(each.turning**2, axis=0)) for each in (claim.before, felt))

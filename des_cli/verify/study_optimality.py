@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from des_cli.model.arrays import Flags, Floats
-from des_cli.model.metric import Budget
+from des_cli.model.metric import FACTOR_DEVIATION, Budget
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.reduction.problem import Problem
@@ -107,7 +107,7 @@ class _Slopes:
     def _spent(self, budget: Budget, control: Floats) -> float:
         """Return the square of a metric over that of its budget, or a multiple of it."""
         claim, metric = self.claim, budget.metric
-        if metric == "mean_square_one_minus_p":
+        if metric == FACTOR_DEVIATION:
             return mean_square_one_minus_p(claim, control) / budget.most
         square = float(claim.weight @ integrand(metric, self._felt(control), claim.before))
         return square / (size(claim, metric) * budget.most**2)

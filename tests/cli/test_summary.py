@@ -6,10 +6,11 @@ from typing import Any
 import pytest
 
 from des_cli.batch.job import JobResult
+from des_cli.cli import summary_rows as rows_of
 from des_cli.cli.console import Console
 from des_cli.cli.summary import exit_code_of, print_closing, print_result
-from des_cli.cli.summary_rows import change, number, percent, summary_rows
 from des_cli.errors import ExitCode
+from des_cli.results.reading import read_metrics
 
 METRICS = {
     "solver": {
@@ -88,6 +89,10 @@ METRICS = {
 def result(**changes: object) -> JobResult:
     values = {"source": "c.yaml", "name": "c", "metrics": METRICS, "objective": ("bb3",)}
     return JobResult(**values | {"written": "runs/c"} | changes)  # type: ignore[arg-type]
+
+
+def summary_rows(shown: JobResult) -> list[tuple[str, str]]:
+    return rows_of.summary_rows(read_metrics(shown.metrics), shown.objective)
 
 
 def with_change(path: str, value: object) -> JobResult:
@@ -179,7 +184,7 @@ def test_a_ride_that_got_worse_is_the_first_line(capsys: pytest.CaptureFixture[s
     assert "worse" not in line
 
 
-USED = "; used at most: rate 50 % (arm), acceleration 50 % (arm)"
+USED = "; used at most: rate 50.0 % (arm), acceleration 50.0 % (arm)"
 
 
 @pytest.mark.parametrize(
@@ -199,18 +204,6 @@ def test_who_keeps_the_limits(
     assert [line for line in lines if line.endswith("arm rate")] == [
         f"limits         {line}" for line in violations
     ]
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(0.5, "50.0 %"), (0.0016, "0.16 %"), (12.0, "1200 %"), (None, "not known")],
-)
-def test_percent(value: float | None, text: str) -> None:
-    assert percent(value) == text
-
-
-def test_what_is_no_number_is_not_known() -> None:
-    assert change(float("nan")) == percent(float("inf")) == number(None) == "not known"
 
 
 def test_violations_are_named_even_when_quiet(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,8 @@ from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machines import DES
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import JointCommands, Profile
-from des_cli.results.notices import find_notices
+from des_cli.results import notices
+from des_cli.results.reading import read_metrics
 
 PROFILE = Profile(
     "p",
@@ -20,6 +21,10 @@ PROFILE = Profile(
     JointCommands(np.zeros(6), np.zeros((6, 2)), np.zeros((5, 2)), np.zeros((5, 2))),
     DES,
 )
+
+
+def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
+    return notices.find_notices(profile, asked, read_metrics(metrics))
 
 
 def asked(*, damped: tuple[int, ...] = ()) -> DesiredMotion:
@@ -97,7 +102,7 @@ def test_a_replaced_motion_is_told_by_joint_where_it_can_be_noticed() -> None:
 @pytest.mark.parametrize("status", ["converged", "acceptable"])
 def test_a_bought_component_is_told(status: str) -> None:
     notice = find_notices(PROFILE, asked(), metrics(status=status, bb3=0.7, ab3=-0.28, cb3=-7.0))[0]
-    assert notice == "one component was bought with another: AB3 grew by 28 %, CB3 grew by 700 %"
+    assert notice == "one component was bought with another: AB3 grew by 28.0 %, CB3 grew by 700 %"
 
 
 def test_a_solution_that_is_none_has_bought_nothing() -> None:
@@ -111,13 +116,13 @@ def test_a_worse_motion_is_not_called_bought() -> None:
 
 def test_a_motion_that_feels_different_is_told() -> None:
     (notice,) = find_notices(PROFILE, asked(), metrics(felt=0.51))
-    assert "seat rate is off by 51 %, G is off by 26 %, at 5.0 % in the joints" in notice
+    assert "seat rate is off by 51.0 %, G is off by 25.5 %, at 5.0 % in the joints" in notice
     assert "a budget on seat_rate_deviation_relative or seat_g_deviation_relative" in notice
     assert find_notices(PROFILE, asked(), metrics(felt=0.2)) == []
     assert find_notices(PROFILE, asked(), metrics(felt=0.51, status="infeasible")) == []
     rate = {"budget": {"seat_rate_deviation_relative": 0.51}}
     (notice,) = find_notices(PROFILE, asked(), metrics(felt=0.51, solver=rate))
-    assert "changed: G is off by 26 %" in notice
+    assert "changed: G is off by 25.5 %" in notice
 
 
 def test_a_ride_that_got_worse_is_told_first_with_its_numbers_and_a_cure() -> None:

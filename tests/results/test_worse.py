@@ -7,7 +7,9 @@ from typing import Any
 
 import pytest
 
-from des_cli.results.worse import find_worse, worse_words
+from des_cli.results import worse
+from des_cli.results.reading import read_metrics
+from des_cli.results.worse import Worse
 
 TOTAL = "felt.seat_angular_acceleration.magnitude"
 
@@ -38,6 +40,14 @@ AS_BEFORE: dict[str, Any] = {
         }
     },
 }
+
+
+def find_worse(metrics: dict[str, Any]) -> list[Worse]:
+    return worse.find_worse(read_metrics(metrics))
+
+
+def worse_words(metrics: dict[str, Any], *, short: bool = False) -> str:
+    return worse.worse_words(read_metrics(metrics), short=short)
 
 
 def changed(**values: float | list[str]) -> dict[str, Any]:

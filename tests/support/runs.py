@@ -14,6 +14,7 @@ from des_cli.model.profile import Control, JointCommands, Profile, Reduction
 from des_cli.model.response import Response
 from des_cli.model.run import Run
 from des_cli.model.solution import Solution
+from des_cli.results.reading import read_metrics
 
 # The joint limits of Table 1 of the study.
 LIMITS = (
@@ -91,7 +92,7 @@ def make_run(
         after=after,
         checks=(),
         violations=(),
-        metrics=metrics,
+        results=read_metrics(metrics),
     )
 
 

@@ -22,6 +22,7 @@ from des_cli.reduction.free.problem import AT_POINTS, FreeTask, in_ground_axes
 from des_cli.reduction.free.program import MotionProgram
 from des_cli.reduction.limits import find_occupant_violations
 from des_cli.solver.barrier import Outcome, Step
+from des_cli.units import percent
 
 ACCEPTABLE = 1e-4
 """Complementarity at which a search that did not converge is good enough to be used: its
@@ -172,12 +173,12 @@ class Answers:
     def unkept(self, spent: Mapping[MetricKey, float], beyond: float) -> str:
         """Say what the motion keeps and its table does not, which is straight between samples."""
         over = [
-            f"{METRICS[metric].label} by {100.0 * (share - 1.0):.2g} %"
+            f"{METRICS[metric].label} by {percent(share - 1.0, 2)}"
             for metric, share in spent.items()
             if share > 1.0
         ]
         if beyond > 0.0:
-            over.append(f"a bound on what the occupant gets by {100.0 * beyond:.2g} %")
+            over.append(f"a bound on what the occupant gets by {percent(beyond, 2)}")
         return (
             f"no table with a step of {self.task.reference.step.max():.3g} s was found within the "
             f"budgets, the nearest exceeds {' and '.join(over) or 'them barely'}; "

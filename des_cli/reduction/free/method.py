@@ -22,7 +22,7 @@ from des_cli.kinematics.seat_turn import seat_turns
 from des_cli.kinematics.twist import seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Seat
-from des_cli.model.metric import Budget, MetricKey
+from des_cli.model.metric import SEAT_RATE_DEVIATION, Budget, MetricKey
 from des_cli.model.motion import Motion, Record
 from des_cli.model.profile import Reduction
 from des_cli.model.solution import Iteration
@@ -52,7 +52,7 @@ from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.solver.barrier import Options, Outcome, minimise
 from des_cli.solver.spline import SplineGrid
 
-WELL_POSED: MetricKey = "seat_rate_deviation_relative"
+WELL_POSED: MetricKey = SEAT_RATE_DEVIATION
 """The metric that sees fast motions of every joint, so that a budget on it leaves one
 optimum."""
 

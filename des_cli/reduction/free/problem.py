@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -17,7 +18,22 @@ from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import SeatForms, SeatMotion, seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine, OccupantBounds, Seat
-from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION, Budget, MetricKey
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_DEVIATION,
+    ANGULAR_ACCELERATION_ERROR,
+    ANGULAR_ACCELERATION_PEAK_RATIO,
+    ANGULAR_ACCELERATION_RMS_RATIO,
+    ATTITUDE_ERROR,
+    JOINT_DEVIATION,
+    JOINT_DEVIATION_SQUARED,
+    METRICS,
+    SEAT_G_DEVIATION,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+    UNFELT_ANGULAR_ACCELERATION,
+    Budget,
+    MetricKey,
+)
 from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
@@ -58,10 +74,20 @@ whoever differentiates a table of positions twice."""
 UNIT_ACCELERATION = 1.0
 """Acceleration [rad/s^2] that the regularisation takes for a joint without a limit."""
 
-AT_POINTS: frozenset[MetricKey] = frozenset(
-    {"attitude_error_max_deg", "seat_angular_acceleration_peak_ratio"}
-)
+AT_POINTS: frozenset[MetricKey] = frozenset({ATTITUDE_ERROR, ANGULAR_ACCELERATION_PEAK_RATIO})
 """Metrics that are a largest value over time: bounds at each point, and no integrals."""
+
+_INTEGRALS: Mapping[MetricKey, Quantity] = MappingProxyType(
+    {
+        SEAT_RATE_DEVIATION: "rate",
+        SEAT_G_DEVIATION: "force",
+        SEAT_G_ERROR: "force",
+        ANGULAR_ACCELERATION_DEVIATION: "acceleration",
+        ANGULAR_ACCELERATION_ERROR: "acceleration",
+        ANGULAR_ACCELERATION_RMS_RATIO: "acceleration",
+    }
+)
+"""What of the ride a metric is the integral of."""
 
 SEAT_ANGLES = ("seat_yaw", "seat_pitch")
 
@@ -322,28 +348,21 @@ class _Measures:
 
     def budget(self, budget: Budget) -> Term | JointBudget:
         """Return a budget as the square of its metric over the square of its most."""
-        most, weight = budget.most, self.weight
-        mean = weight / self.grid.duration
-        match budget.metric:
-            case "joint_deviation_relative":
-                return self._joints(most)
-            case "joint_deviation_relative_squared":
-                return self._joints(float(np.sqrt(most)))
-            case "seat_rate_deviation_relative":
-                return self._term("rate", self._per_size("rate") / most)
-            case "seat_g_deviation_relative":
-                return self._term("force", self._per_size("force") / most)
-            case "seat_g_rms_error_g":
-                return self._term("force", np.sqrt(mean) / (most * STANDARD_GRAVITY_M_S2))
-            case "seat_angular_acceleration_deviation_relative":
-                return self._term("acceleration", self._per_size("acceleration") / most)
-            case "seat_angular_acceleration_rms_error_rad_s2":
-                return self._term("acceleration", np.sqrt(mean) / most)
-            case "seat_angular_acceleration_rms_ratio":
-                least = UNFELT_ANGULAR_ACCELERATION * np.sqrt(self.grid.duration / weight)
-                scale = min(self._per_size("acceleration"), 1.0 / least)
-                return Term("acceleration", scale / most * np.eye(3))
-        raise ValueError(f"a free motion has no budget on {budget.metric}")
+        quantity, most = _INTEGRALS.get(budget.metric), budget.most
+        if budget.metric == JOINT_DEVIATION:
+            return self._joints(most)
+        if budget.metric == JOINT_DEVIATION_SQUARED:
+            return self._joints(float(np.sqrt(most)))
+        if quantity is None:
+            raise ValueError(f"a free motion has no budget on {budget.metric}")
+        if budget.metric == ANGULAR_ACCELERATION_RMS_RATIO:
+            least = UNFELT_ANGULAR_ACCELERATION * np.sqrt(self.grid.duration / self.weight)
+            scale = min(self._per_size(quantity), 1.0 / least)
+            return Term(quantity, scale / most * np.eye(3))
+        if METRICS[budget.metric].relative:
+            return self._term(quantity, self._per_size(quantity) / most)
+        unit = STANDARD_GRAVITY_M_S2 if quantity == "force" else 1.0
+        return self._term(quantity, np.sqrt(self.weight / self.grid.duration) / (most * unit))
 
     def _per_size(self, quantity: Quantity) -> float:
         """Return one over the norm of a quantity of the reference."""
@@ -371,7 +390,7 @@ def _root(weight: Floats) -> Floats:
 
 def _point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) -> LocalBound:
     """Return a budget that bounds every point."""
-    if budget.metric == "attitude_error_max_deg":
+    if budget.metric == ATTITUDE_ERROR:
         return _attitude_bound(task, times, angle, budget.most)
     peak = np.max(np.linalg.norm(task.asked().seat_angular_acceleration, axis=-1))
     return NormBound("acceleration", budget.most * max(float(peak), UNFELT_ANGULAR_ACCELERATION))

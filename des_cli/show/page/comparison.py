@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import get_args
 
-from des_cli.model.coriolis import COMPONENTS
-from des_cli.model.machine import JOINTS
+from des_cli.model.coriolis import COMPONENTS, Component
+from des_cli.model.felt import BeforeAfter
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_ERROR,
+    JOINT_DEVIATION,
+    JOINT_DEVIATION_SQUARED,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+    MetricKey,
+)
+from des_cli.model.metrics import ConstantBaseline, Metrics, SweepBaseline, When
 from des_cli.results.budgets import spent_budgets
-from des_cli.results.ends import When, end_words
-from des_cli.results.reading import lookup, number
-from des_cli.results.worse import worse_paths
+from des_cli.results.ends import end_words
+from des_cli.results.worse import FeltNumber, worse_numbers
 from des_cli.runs_out.run_folder import StoredRun
-from des_cli.show.page.numbers import DASH, change, percent, plain, words
 from des_cli.show.plots.standing import status_words
+from des_cli.show.words import PAGE, text_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,128 +53,147 @@ class Row:
 class _Quantity:
     """A number that runs are compared by; ``better`` is the larger (1) or the smaller (-1).
 
-    Where ``before`` is given, what stands there is shown before the number.
+    Where ``before`` is given, what it reads is shown before the number. ``worse`` is what
+    the number is called among those of the ride that may have got worse.
     """
 
     label: str
-    path: str
+    read: Callable[[Metrics], float | None]
     write: Callable[[float | None], str]
-    better: int
-    before: str = ""
+    better: int = 0
+    before: Callable[[Metrics], float | None] | None = None
+    worse: FeltNumber | None = None
 
 
-def _felt(label: str, stem: str, unit: str) -> _Quantity:
+def _felt(
+    label: str, read: Callable[[Metrics], BeforeAfter], worse: FeltNumber | None = None
+) -> _Quantity:
     """Return a quantity of the pilot's, before and after; less is better."""
-    return _Quantity(label, f"{stem}_after_{unit}", _three, -1, f"{stem}_before_{unit}")
+    return _Quantity(
+        label,
+        lambda metrics: read(metrics).after,
+        _three,
+        -1,
+        lambda metrics: read(metrics).before,
+        worse,
+    )
+
+
+def _fidelity(label: str, metric: MetricKey, write: Callable[[float | None], str]) -> _Quantity:
+    """Return a fidelity metric; less is better."""
+    return _Quantity(label, lambda metrics: metrics.fidelity.value(metric), write, -1)
+
+
+def _gained(component: Component) -> _Quantity:
+    return _Quantity(
+        component.label, lambda metrics: metrics.coriolis.reduction(component.key), PAGE.change, 1
+    )
 
 
 def _three(value: float | None) -> str:
-    return plain(value, 3)
+    return PAGE.number(value)
 
 
-_TOTAL = "felt.seat_angular_acceleration.magnitude"
+def _four(value: float | None) -> str:
+    return PAGE.number(value, 4)
+
+
+def _sweep(metrics: Metrics) -> SweepBaseline:
+    return metrics.baseline.report_sweep or SweepBaseline()
+
+
+def _constant(metrics: Metrics) -> ConstantBaseline:
+    return metrics.baseline.constant_p or ConstantBaseline()
 
 
 _GROUPS: tuple[tuple[str, tuple[_Quantity, ...]], ...] = (
     (
         "What the pilot feels, before → after",
         (
-            _felt("cross-coupling, rms [rad/s²]", "coriolis.vector.rms", "rad_s2"),
-            _felt("total angular acceleration, rms [rad/s²]", f"{_TOTAL}.rms", "rad_s2"),
-            _felt("… peak [rad/s²]", f"{_TOTAL}.peak", "rad_s2"),
-            _felt("peak Gy [g]", "felt.seat_g.gy.peak", "g"),
-            _felt("onset of Gx [g/s]", "felt.seat_g.gx.onset", "g_s"),
-            _felt("… of Gy", "felt.seat_g.gy.onset", "g_s"),
-            _felt("… of Gz", "felt.seat_g.gz.onset", "g_s"),
+            _felt("cross-coupling, rms [rad/s²]", lambda m: m.coriolis.parts["vector"].sizes.rms),
+            _felt(
+                "total angular acceleration, rms [rad/s²]",
+                lambda m: m.felt.turning.rms,
+                "turning rms",
+            ),
+            _felt("… peak [rad/s²]", lambda m: m.felt.turning.peak, "turning peak"),
+            _felt("peak Gy [g]", lambda m: m.felt.seat_g["gy"].peak, "gy peak"),
+            _felt("onset of Gx [g/s]", lambda m: m.felt.seat_g["gx"].onset, "gx onset"),
+            _felt("… of Gy", lambda m: m.felt.seat_g["gy"].onset, "gy onset"),
+            _felt("… of Gz", lambda m: m.felt.seat_g["gz"].onset, "gz onset"),
         ),
     ),
     (
         "How far from the profile",
         (
-            _Quantity("seat rate", "fidelity.seat_rate_deviation_relative", percent, -1),
-            _Quantity(
-                "total angular acceleration, rms [rad/s²]",
-                "fidelity.seat_angular_acceleration_rms_error_rad_s2",
-                _three,
-                -1,
+            _fidelity("seat rate", SEAT_RATE_DEVIATION, PAGE.percent),
+            _fidelity(
+                "total angular acceleration, rms [rad/s²]", ANGULAR_ACCELERATION_ERROR, _three
             ),
-            _Quantity("seat G, rms [g]", "fidelity.seat_g_rms_error_g", _three, -1),
-            _Quantity("tilt, at most [deg]", "fidelity.tilt_error_max_deg", _three, -1),
+            _fidelity("seat G, rms [g]", SEAT_G_ERROR, _three),
+            _Quantity("tilt, at most [deg]", lambda m: m.fidelity.tilt_error_max_deg, _three, -1),
             _Quantity(
                 "seat rate, by keeping the limits alone",
-                "executable.seat_rate_deviation_relative",
-                percent,
-                0,
+                lambda m: m.executable.change.value(SEAT_RATE_DEVIATION),
+                PAGE.percent,
             ),
         ),
     ),
     (
         "Change of the cross-coupling, ∫ after² against ∫ before²",
-        tuple(
-            _Quantity(component.label, f"coriolis.{component.key}.reduction", change, 1)
-            for component in COMPONENTS
-            if component.key not in ("ab3", "cb3")
-        ),
+        tuple(_gained(each) for each in COMPONENTS if each.key not in ("ab3", "cb3")),
     ),
     (
         "The study's measure",
         (
-            _Quantity("joint deviation", "fidelity.joint_deviation_relative", percent, -1),
-            _Quantity("… squared", "fidelity.joint_deviation_relative_squared", percent, -1),
+            _fidelity("joint deviation", JOINT_DEVIATION, PAGE.percent),
+            _fidelity("… squared", JOINT_DEVIATION_SQUARED, PAGE.percent),
             _Quantity(
                 "desired motion changed for the limits",
-                "executable.joint_change_relative",
-                percent,
-                0,
+                lambda m: m.executable.change.joint_change_relative,
+                PAGE.percent,
             ),
         ),
     ),
     (
         "What else would have done",
         (
-            _Quantity(
-                "study's single sweep",
-                "baseline.report_sweep.reduction",
-                change,
-                0,
-            ),
-            _Quantity(
-                "… joint deviation", "baseline.report_sweep.joint_deviation_relative", percent, 0
-            ),
-            _Quantity("constant p, equal reduction", "baseline.constant_p.p", plain, 0),
-            _Quantity(
-                "… joint deviation", "baseline.constant_p.joint_deviation_relative", percent, 0
-            ),
+            _Quantity("study's single sweep", lambda m: _sweep(m).reduction, PAGE.change),
+            _Quantity("… joint deviation", lambda m: _sweep(m).joint_deviation, PAGE.percent),
+            _Quantity("constant p, equal reduction", lambda m: _constant(m).p, _four),
+            _Quantity("… joint deviation", lambda m: _constant(m).joint_deviation, PAGE.percent),
         ),
     ),
 )
 
 
-def comparison_rows(runs: Sequence[StoredRun]) -> list[Row]:
+def comparison_rows(metrics: Sequence[Metrics]) -> list[Row]:
     """Return the table that compares runs.
 
     Parameters
     ----------
-    runs : sequence of StoredRun
+    metrics : sequence of Metrics
+        Of each run.
 
     Returns
     -------
     list of Row
         With a cell for each run, in their order.
     """
-    metrics = [run.metrics for run in runs]
+    solvers = [each.solver for each in metrics]
     rows = [
         Row("status", tuple(_status(each) for each in metrics)),
-        Row("method", tuple(Cell(words(lookup(each, "solver.method"))) for each in metrics)),
-        Row("algorithm", tuple(Cell(words(lookup(each, "solver.algorithm"))) for each in metrics)),
-        Row("control", tuple(Cell(words(lookup(each, "solver.control"))) for each in metrics)),
-        Row("axes", tuple(Cell(words(lookup(each, "solver.axes"))) for each in metrics)),
+        Row("method", tuple(Cell(text_of(each.method)) for each in solvers)),
+        Row("algorithm", tuple(Cell(text_of(each.algorithm)) for each in solvers)),
+        Row("control", tuple(Cell(text_of(each.control)) for each in solvers)),
+        Row("axes", tuple(Cell(text_of(each.axes)) for each in solvers)),
         Row("budget", tuple(_budget(each) for each in metrics)),
         Row("limits", tuple(limits_cell(each) for each in metrics)),
-        Row("cost J", tuple(Cell(plain(number(each, "solver.cost"))) for each in metrics)),
+        Row("cost J", tuple(Cell(PAGE.number(each.cost, 4)) for each in solvers)),
     ]
     for when in get_args(When):
-        rows.append(Row(when, tuple(Cell(end_words(each, when) or DASH) for each in metrics)))
+        ends = (end_words(each.fidelity, when) for each in metrics)
+        rows.append(Row(when, tuple(Cell(words or PAGE.unknown) for words in ends)))
     for heading, quantities in _GROUPS:
         rows += [Row(heading), *(_compared(quantity, metrics) for quantity in quantities)]
     return rows
@@ -181,26 +208,26 @@ def labels(runs: Sequence[StoredRun]) -> list[str]:
     ]
 
 
-def limits_cell(metrics: Mapping[str, Any]) -> Cell:
+def limits_cell(metrics: Metrics) -> Cell:
     """Say whether the modified motion keeps the limits of every joint."""
-    verdicts = {joint: lookup(metrics, f"limits.modified.{joint}.ok") for joint in JOINTS}
+    verdicts = {joint: load.ok for joint, load in metrics.limits.modified.items()}
     broken = [joint for joint, ok in verdicts.items() if ok is False]
     if broken:
         return Cell(f"broken: {', '.join(broken)}", "bad")
-    return Cell("kept" if all(ok is True for ok in verdicts.values()) else DASH)
+    return Cell("kept" if all(ok is True for ok in verdicts.values()) else PAGE.unknown)
 
 
-def _status(metrics: Mapping[str, Any]) -> Cell:
+def _status(metrics: Metrics) -> Cell:
     unfinished = status_words(metrics)
-    return Cell(unfinished or words(lookup(metrics, "solver.status")), "bad" if unfinished else "")
+    return Cell(unfinished or text_of(metrics.solver.status), "bad" if unfinished else "")
 
 
-def _budget(metrics: Mapping[str, Any]) -> Cell:
-    return Cell(", ".join(each.allowed for each in spent_budgets(metrics)) or DASH)
+def _budget(metrics: Metrics) -> Cell:
+    return Cell(", ".join(each.allowed for each in spent_budgets(metrics)) or PAGE.unknown)
 
 
-def _compared(quantity: _Quantity, metrics: Sequence[Mapping[str, Any]]) -> Row:
-    values = [number(each, quantity.path) for each in metrics]
+def _compared(quantity: _Quantity, metrics: Sequence[Metrics]) -> Row:
+    values = [quantity.read(each) for each in metrics]
     known = [quantity.better * value for value in values if value is not None]
     # With a single run, or equal ones, there is no best.
     best = max(known) if quantity.better and len(set(known)) > 1 else None
@@ -210,10 +237,10 @@ def _compared(quantity: _Quantity, metrics: Sequence[Mapping[str, Any]]) -> Row:
         if value is not None and quantity.better * value == best:
             mark = "good"
         grew = value is not None and quantity.better > 0 and value < 0
-        if grew or quantity.path in worse_paths(each):
+        if grew or quantity.worse in worse_numbers(each):
             mark = "bad"
         text = quantity.write(value)
         if quantity.before and value is not None:
-            text = f"{quantity.write(number(each, quantity.before))} → {text}"
+            text = f"{quantity.write(quantity.before(each))} → {text}"
         cells.append(Cell(text, mark))
     return Row(quantity.label, tuple(cells))

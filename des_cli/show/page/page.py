@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import jinja2
 
+from des_cli.results.reading import read_metrics
 from des_cli.runs_out.run_folder import StoredRun
 from des_cli.show.page.comparison import comparison_rows, labels
 from des_cli.show.page.section import run_section
@@ -71,11 +72,14 @@ def render_report(runs: Sequence[StoredRun]) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    comparison = comparison_rows(runs)
+    metrics = [read_metrics(run.metrics) for run in runs]
+    comparison = comparison_rows(metrics)
     page = environment.get_template("page.html.j2").render(
         sections=[
-            run_section(run, label, position)
-            for position, (run, label) in enumerate(zip(runs, labels(runs), strict=True), start=1)
+            run_section(run, read, label, position)
+            for position, (run, read, label) in enumerate(
+                zip(runs, metrics, labels(runs), strict=True), start=1
+            )
         ],
         comparison=comparison,
         attention=any(cell.mark == "bad" for row in comparison for cell in row.cells),

@@ -2,36 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
-
-from des_cli.model.coriolis import COMPONENTS
-from des_cli.results.reading import lookup, number
+from des_cli.model.coriolis import COMPONENTS, ComponentKey
+from des_cli.model.metric import (
+    JOINT_DEVIATION,
+    JOINT_DEVIATION_SQUARED,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+)
+from des_cli.model.metrics import Metrics
 from des_cli.results.worse import worse_words
 from des_cli.show.page.comparison import limits_cell
-from des_cli.show.page.numbers import percent, plain, words
 from des_cli.show.plots.standing import budget_words, change_words
 from des_cli.show.plots.weighted import weighted_component
-
-_NAMES: Mapping[str, str] = {
-    component.key: component.label if component.axes else f"the {component.label}"
-    for component in COMPONENTS
-}
-
-_TOTAL = "felt.seat_angular_acceleration.magnitude"
+from des_cli.show.words import PAGE, in_sentence, listed, text_of
 
 # A component that grows by less is rounding, or noise in a component that
 # hardly exists.
 _WORTH_A_WORD = 0.005
 
 
-def summary_sentences(metrics: Mapping[str, Any]) -> list[str]:
+def summary_sentences(metrics: Metrics) -> list[str]:
     """Return the summary of a run.
 
     Parameters
     ----------
-    metrics : mapping
-        The content of ``metrics.json``.
+    metrics : Metrics
 
     Returns
     -------
@@ -53,97 +48,99 @@ def summary_sentences(metrics: Mapping[str, Any]) -> list[str]:
     return [sentence for sentence in [*sentences, *_baselines(metrics)] if sentence]
 
 
-def _worse(metrics: Mapping[str, Any]) -> str:
-    found = worse_words(metrics).replace("->", "→").replace(" -", " −")
+def _worse(metrics: Metrics) -> str:
+    found = PAGE.sentence(worse_words(metrics))
     return f"{found[0].upper()}{found[1:]}." if found else ""
 
 
-def _gain(metrics: Mapping[str, Any]) -> str:
-    weighted = weighted_component(metrics)
-    keys = [weighted, "vector"] if weighted else ["vector", "seat_x", "seat_y", "seat_z"]
-    reductions = {key: number(metrics, f"coriolis.{key}.reduction") for key in keys}
+def _gain(metrics: Metrics) -> str:
+    weighted = weighted_component(metrics.solver)
+    keys: list[ComponentKey] = (
+        [weighted, "vector"] if weighted else ["vector", "seat_x", "seat_y", "seat_z"]
+    )
+    reductions = {key: metrics.coriolis.reduction(key) for key in keys}
     taken = [
-        f"{percent(value)} off {_NAMES[key]}"
+        f"{PAGE.percent(value)} off {in_sentence(key)}"
         for key, value in reductions.items()
         if value is not None and value >= 0
     ]
     if not taken:
         return "Took nothing off the cross-coupling."
-    return f"Took {_listed(taken)}."
+    return f"Took {listed(taken)}."
 
 
-def _allowed(metrics: Mapping[str, Any]) -> str:
+def _allowed(metrics: Metrics) -> str:
     budget = budget_words(metrics)
     return f"Spent of its budget: {budget}." if budget else ""
 
 
-def _changed(metrics: Mapping[str, Any]) -> str:
-    if lookup(metrics, "executable.replaced") is not True:
+def _changed(metrics: Metrics) -> str:
+    if metrics.executable.replaced is not True:
         return ""
-    changed = change_words(metrics)
+    changed = change_words(metrics.executable.change)
     if not changed:
         return (
             "What the profile asks for beyond the machine's limits is rounded by less than "
             "anybody could notice."
         )
-    whole = percent(number(metrics, "executable.joint_change_relative"))
+    whole = PAGE.percent(metrics.executable.change.joint_change_relative)
     return (
         "The machine cannot make the motion that the profile asks for: the nearest one inside "
         f"its limits is the desired motion here ({changed}; {whole} of the joint angles)."
     )
 
 
-def _felt(metrics: Mapping[str, Any]) -> str:
-    rate = number(metrics, "fidelity.seat_rate_deviation_relative")
-    error = number(metrics, "fidelity.seat_g_rms_error_g")
-    before, after = (number(metrics, f"{_TOTAL}.rms_{when}_rad_s2") for when in ("before", "after"))
+def _felt(metrics: Metrics) -> str:
+    rate = metrics.fidelity.value(SEAT_RATE_DEVIATION)
+    error = metrics.fidelity.value(SEAT_G_ERROR)
+    turning = metrics.felt.turning.rms
     parts = []
     if rate is not None:
-        parts.append(f"the seat's angular rate is off by {percent(rate)}")
+        parts.append(f"the seat's angular rate is off by {PAGE.percent(rate)}")
     if error is not None:
-        parts.append(f"its G-vector by {plain(error, 3)} g rms")
-    if before is not None and after is not None:
+        parts.append(f"its G-vector by {PAGE.number(error, 3)} g rms")
+    if turning.known is not None:
         parts.append(
-            f"the total angular acceleration is {plain(after, 3)} rad/s² rms, "
-            f"{plain(before, 3)} before"
+            f"the total angular acceleration is {PAGE.number(turning.after, 3)} rad/s² rms, "
+            f"{PAGE.number(turning.before, 3)} before"
         )
-    return f"What the pilot feels of it: {_listed(parts)}." if parts else ""
+    return f"What the pilot feels of it: {listed(parts)}." if parts else ""
 
 
-def _study(metrics: Mapping[str, Any]) -> str:
-    cost = number(metrics, "fidelity.joint_deviation_relative")
-    squared = number(metrics, "fidelity.joint_deviation_relative_squared")
+def _study(metrics: Metrics) -> str:
+    cost = metrics.fidelity.value(JOINT_DEVIATION)
+    squared = metrics.fidelity.value(JOINT_DEVIATION_SQUARED)
     if cost is None:
         return ""
-    return f"By the study's measure: {percent(cost)} joint deviation ({percent(squared)} squared)."
+    return (
+        f"By the study's measure: {PAGE.percent(cost)} joint deviation "
+        f"({PAGE.percent(squared)} squared)."
+    )
 
 
-_STUDY = frozenset(each.key for each in COMPONENTS if each.axes == "report")
-
-
-def _moved(metrics: Mapping[str, Any]) -> str:
+def _moved(metrics: Metrics) -> str:
     grown = []
-    axes = lookup(metrics, "solver.axes")
-    for key, name in _NAMES.items():
-        if axes == "seat" and key in _STUDY:
+    axes = metrics.solver.axes
+    for component in COMPONENTS:
+        if axes == "seat" and component.axes == "report":
             continue  # the pilot feels none of the study's components by itself
-        reduction = number(metrics, f"coriolis.{key}.reduction")
+        reduction = metrics.coriolis.reduction(component.key)
         if reduction is not None and reduction < -_WORTH_A_WORD:
-            grown.append(f"{name} by {percent(-reduction)}")
+            grown.append(f"{in_sentence(component.key)} by {PAGE.percent(-reduction)}")
     if not grown:
         return ""
-    return f"It was partly moved, not removed: the squared integral grew for {_listed(grown)}."
+    return f"It was partly moved, not removed: the squared integral grew for {listed(grown)}."
 
 
-def _wrong(metrics: Mapping[str, Any]) -> str:
+def _wrong(metrics: Metrics) -> str:
     parts = []
-    status = words(lookup(metrics, "solver.status"))
+    status = text_of(metrics.solver.status)
     if status == "acceptable":
         parts.append(
             "The solver stopped short of its tolerance (acceptable): the motion is verified, "
             "but not quite the best one."
         )
-    elif lookup(metrics, "solver.converged") is False:
+    elif metrics.solver.converged is False:
         parts.append(f"The solver did not converge ({status}).")
     limits = limits_cell(metrics)
     if limits.mark == "bad":
@@ -151,30 +148,18 @@ def _wrong(metrics: Mapping[str, Any]) -> str:
     return " ".join(parts)
 
 
-def _baselines(metrics: Mapping[str, Any]) -> list[str]:
+def _baselines(metrics: Metrics) -> list[str]:
     sentences = []
-    p = number(metrics, "baseline.constant_p.p")
-    cost = number(metrics, "baseline.constant_p.joint_deviation_relative")
-    if p is not None and cost is not None:
+    constant, sweep = metrics.baseline.constant_p, metrics.baseline.report_sweep
+    if constant and constant.p is not None and constant.joint_deviation is not None:
         sentences.append(
-            f"A constant p = {plain(p, 3)} reaches the same reduction at {percent(cost)} "
-            "joint deviation."
+            f"A constant p = {PAGE.number(constant.p, 3)} reaches the same reduction at "
+            f"{PAGE.percent(constant.joint_deviation)} joint deviation."
         )
-    reduction = number(metrics, "baseline.report_sweep.reduction")
-    cost = number(metrics, "baseline.report_sweep.joint_deviation_relative")
-    if reduction is not None and cost is not None:
+    if sweep and sweep.reduction is not None and sweep.joint_deviation is not None:
+        takes, off = ("takes", "off") if sweep.reduction >= 0 else ("adds", "to")
         sentences.append(
-            f"The study's single sweep {'takes' if reduction >= 0 else 'adds'} "
-            f"{percent(abs(reduction))} {'off' if reduction >= 0 else 'to'} what is weighed, "
-            f"at {percent(cost)} joint deviation."
+            f"The study's single sweep {takes} {PAGE.percent(abs(sweep.reduction))} {off} what is "
+            f"weighed, at {PAGE.percent(sweep.joint_deviation)} joint deviation."
         )
     return sentences
-
-
-def _listed(parts: Sequence[str]) -> str:
-    """Join parts as a sentence does.
-
-    >>> _listed(["a"]), _listed(["a", "b"]), _listed(["a", "b", "c"])
-    ('a', 'a and b', 'a, b and c')
-    """
-    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)

@@ -17,6 +17,8 @@ from matplotlib.figure import Figure
 from des_cli.model.arrays import Floats
 from des_cli.model.coriolis import COMPONENTS, ComponentKey
 from des_cli.model.machine import JOINTS
+from des_cli.model.metrics import Metrics
+from des_cli.results.reading import read_metrics
 from des_cli.show.plots.canvas import (
     AFTER,
     BEFORE,
@@ -36,11 +38,11 @@ from des_cli.show.plots.canvas import (
 )
 from des_cli.show.plots.ride import felt, limits
 from des_cli.show.plots.standing import budget_words, change_words, status_words
-from des_cli.show.plots.weighted import reduction_of, weighted_component
+from des_cli.show.plots.weighted import weighted_component
+from des_cli.show.words import FIGURE
 from des_cli.units import split_unit
 
 Columns: TypeAlias = Mapping[str, Floats]
-Metrics: TypeAlias = Mapping[str, Any]
 
 CAPTIONS: Mapping[str, str] = {
     "felt": (
@@ -73,15 +75,15 @@ _IN_AXES = [
 ]
 
 
-def draw_plots(trajectory: Columns, metrics: Metrics) -> dict[str, bytes]:
+def draw_plots(trajectory: Columns, content: Mapping[str, Any]) -> dict[str, bytes]:
     """Draw all figures of a run.
 
     Parameters
     ----------
     trajectory : mapping of str to (n,) array
         The columns of ``trajectory.parquet``.
-    metrics : mapping
-        The content of ``metrics.json``.
+    content : mapping
+        Of ``metrics.json``.
 
     Returns
     -------
@@ -103,6 +105,7 @@ def draw_plots(trajectory: Columns, metrics: Metrics) -> dict[str, bytes]:
         del figures["factor"]
     if "adjoint_arm" not in trajectory:
         del figures["adjoint"]
+    metrics = read_metrics(content)
     status = status_words(metrics)
     pictures = {}
     with style():
@@ -130,7 +133,7 @@ def _commands(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
             (MODIFIED, columns[f"modified_{column}"] / unit.to_si),
         ]
         draw(panel, columns["t_s"], curves, label, _FLOOR[unit.suffix])
-    if changed := change_words(metrics):
+    if changed := change_words(metrics.executable.change):
         note(axes[0][0], f"moved by the limits alone: {changed}")
     return figure, title
 
@@ -217,16 +220,15 @@ def _norm(columns: Columns, when: str) -> Floats:
 
 def _shown_component(columns: Columns, metrics: Metrics) -> ComponentKey:
     """Return the component that the weight looks at, else the one that is largest before."""
-    weighted = weighted_component(metrics)
+    weighted = weighted_component(metrics.solver)
     if weighted is not None:
         return weighted
     return max(_IN_AXES[1], key=lambda key: float(np.ptp(columns[f"coriolis_{key}_before_rad_s2"])))
 
 
-def _share_taken_off(metrics: Metrics, key: str) -> str:
+def _share_taken_off(metrics: Metrics, key: ComponentKey) -> str:
     """Say how much of the squared integral of a component is gone, or was added."""
-    reduction = reduction_of(metrics, key)
+    reduction = metrics.coriolis.reduction(key)
     if reduction is None:
         return ""
-    sign = "−" if reduction >= 0 else "+"
-    return f"squared integral {sign}{100 * abs(reduction):.1f} %"
+    return f"squared integral {FIGURE.change(reduction)}"

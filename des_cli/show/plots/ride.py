@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from des_cli.model.arrays import Floats
+from des_cli.model.loads import Driven
 from des_cli.model.machine import JOINTS
-from des_cli.results.reading import number
+from des_cli.model.metrics import Metrics
 from des_cli.show.plots.canvas import AFTER, BEFORE, DESIRED, MODIFIED, Pen, draw, note, sheet
+from des_cli.show.words import FIGURE
 
 Columns: TypeAlias = Mapping[str, Floats]
-Metrics: TypeAlias = Mapping[str, Any]
 
 _FLOOR = {"deg/s": 0.1, "rad/s²": 2e-3, "g": 2e-3, "rad/s³": 0.02}
+
+_DRIVEN: tuple[tuple[str, Driven, str], ...] = (
+    ("rad_s2", "acceleration", "rad/s²"),
+    ("rad_s3", "jerk", "rad/s³"),
+)
 
 _BAND, _BEYOND = "#EAF3EA", "#F7E3DA"
 _ROOM = 1.15
@@ -60,17 +66,14 @@ def limits(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
     band = Pen("within the limit", _BAND, width=7.0)
     figure, axes = sheet(title, [band, DESIRED, MODIFIED], 3, 2, height=1.7)
     for i, joint in enumerate(JOINTS):
-        for j, (suffix, name, unit) in enumerate(
-            (("rad_s2", "acceleration", "rad/s²"), ("rad_s3", "jerk", "rad/s³"))
-        ):
+        for j, (suffix, name, unit) in enumerate(_DRIVEN):
             curves = [
                 (DESIRED, columns[f"asked_{joint}_{suffix}"]),
                 (MODIFIED, columns[f"modified_{joint}_{suffix}"]),
             ]
             draw(axes[i][j], columns["t_s"], curves, f"{joint} [{unit}]", _FLOOR[unit])
-            stem = f"limits.modified.{joint}.{name}"
-            bound = number(metrics, f"{stem}_limit_{suffix}")
-            peak = number(metrics, f"{stem}_peak_{suffix}")
+            load = metrics.limits.modified[joint]
+            bound, peak = load.limit(name), load.peak(name)
             _shade(axes[i][j], bound, [values for _, values in curves])
             note(axes[i][j], _standing(name, bound, peak, unit))
     return figure, title
@@ -96,11 +99,10 @@ def _shade(panel: Axes, bound: float | None, values: list[Floats]) -> None:
 def _standing(name: str, bound: float | None, peak: float | None, unit: str) -> str:
     if bound is None:
         return f"{name}: no limit"
-    used = f", peak at {100 * peak / bound:.0f} %" if peak is not None and bound > 0.0 else ""
+    used = f", peak at {FIGURE.percent(peak / bound)}" if peak is not None and bound > 0.0 else ""
     return f"{name}: limit ±{bound:.3g} {unit}{used}"
 
 
 def _size(metrics: Metrics) -> str:
-    stem = "felt.seat_angular_acceleration.magnitude.rms"
-    before, after = (number(metrics, f"{stem}_{when}_rad_s2") for when in ("before", "after"))
-    return "" if before is None or after is None else f"rms {before:.3g} → {after:.3g} rad/s²"
+    rms = FIGURE.from_to(metrics.felt.turning.rms)
+    return f"rms {rms} rad/s²" if rms else ""

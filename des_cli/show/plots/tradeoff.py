@@ -10,6 +10,13 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_ERROR,
+    ATTITUDE_ERROR,
+    JOINT_DEVIATION,
+    SEAT_G_ERROR,
+    SEAT_RATE_DEVIATION,
+)
 from des_cli.model.tradeoff import TradePoint
 from des_cli.show.plots.canvas import (
     BLUE,
@@ -23,6 +30,7 @@ from des_cli.show.plots.canvas import (
     sheet,
     style,
 )
+from des_cli.units import percent
 
 FREE = Pen("free", GREEN, (0, (2.5, 1.2)), marker="D")
 PER_JOINT = Pen("per joint", BLUE, marker="o")
@@ -36,15 +44,15 @@ _SIZES = {"D": 4.8, "o": 5.5, "s": 5.0, ".": 5.0, "X": 9.0}
 
 # Abscissae: column, what it is called, what it is multiplied with, its unit.
 _ABSCISSAE = {
-    "joint_deviation_relative": ("deviation of the joint angles ‖θ − Θ‖ / ‖Θ‖", 100.0, "%"),
-    "seat_rate_deviation_relative": ("deviation of the seat's angular rate", 100.0, "%"),
-    "seat_g_rms_error_g": ("error of the G-vector at the seat, rms", 1.0, "g"),
-    "seat_angular_acceleration_rms_error_rad_s2": (
+    JOINT_DEVIATION: ("deviation of the joint angles ‖θ − Θ‖ / ‖Θ‖", 100.0, "%"),
+    SEAT_RATE_DEVIATION: ("deviation of the seat's angular rate", 100.0, "%"),
+    SEAT_G_ERROR: ("error of the G-vector at the seat, rms", 1.0, "g"),
+    ANGULAR_ACCELERATION_ERROR: (
         "error of the total angular acceleration at the seat, rms",
         1.0,
         "rad/s²",
     ),
-    "attitude_error_max_deg": ("largest error of the seat's attitude", 1.0, "deg"),
+    ATTITUDE_ERROR: ("largest error of the seat's attitude", 1.0, "deg"),
 }
 _MARGIN = 1.08
 _TOP = 105.0  # room above a reduction of all
@@ -82,7 +90,7 @@ def draw_tradeoff(points: Sequence[TradePoint], about: str) -> bytes:
 def _figure(points: Sequence[TradePoint], title: str) -> Figure:
     known = [point for point in points if point.objective_reduction is not None]
     swept = {point.swept for point in points if point.algorithm == "optimum"}
-    abscissa = next((key for key in _ABSCISSAE if key in swept), "joint_deviation_relative")
+    abscissa = next((key for key in _ABSCISSAE if key in swept), JOINT_DEVIATION)
     curves = [
         (pen, _along(known, abscissa, algorithm, control))
         for pen, algorithm, control in (
@@ -224,4 +232,4 @@ def _name(point: TradePoint) -> str:
         return f"{point.value:g} rad/s²"
     if point.swept.endswith("_g"):
         return f"{point.value:g} g"
-    return f"{100.0 * point.value:g} %"
+    return percent(point.value, 6)

@@ -16,13 +16,14 @@ from PIL import Image
 from des_cli.model.arrays import Floats
 from des_cli.model.run import Run
 from des_cli.model.tradeoff import TradePoint
+from des_cli.results.reading import read_metrics
 from des_cli.runs_out.tables import trajectory_columns
 from des_cli.show.plots import CAPTIONS, draw_plots, draw_tradeoff
 from des_cli.show.plots.canvas import AFTER, BEFORE, draw, sheet, style
 from des_cli.show.plots.ride import limits
 from des_cli.show.plots.thinning import thin
 from des_cli.show.plots.tradeoff import _figure
-from des_cli.show.plots.weighted import reduction_of, weighted_component
+from des_cli.show.plots.weighted import weighted_component
 
 MakeRun = Callable[..., Run]
 
@@ -121,12 +122,12 @@ def panel_of_limits(peak: float, limit: float | None) -> Any:
     }
     arm = {"acceleration_limit_rad_s2": limit, "acceleration_peak_rad_s2": peak}
     with style():
-        return limits(columns, {"limits": {"modified": {"arm": arm}}})[0].axes[0]
+        return limits(columns, read_metrics({"limits": {"modified": {"arm": arm}}}))[0].axes[0]
 
 
 @pytest.mark.parametrize(
     ("peak", "words", "near"),
-    [(0.6, "peak at 95 %", True), (0.9, "peak at 143 %", True), (0.01, "peak at 2 %", False)],
+    [(0.6, "peak at 95.2 %", True), (0.9, "peak at 143 %", True), (0.01, "peak at 1.6 %", False)],
 )
 def test_a_limit_is_shaded_and_on_the_paper_where_it_is_near(
     peak: float, words: str, near: bool
@@ -232,12 +233,13 @@ def test_thinning_keeps_every_peak(n: int, columns: int, seed: int) -> None:
     ],
 )
 def test_the_weighted_component_is_known(solver: dict[str, object], expected: str | None) -> None:
-    assert weighted_component({"solver": solver}) == expected
+    assert weighted_component(read_metrics({"solver": solver}).solver) == expected
 
 
 @pytest.mark.parametrize("reduction", [None, "0.5", float("nan"), 10**400, [0.5]])
 def test_a_reduction_that_is_no_number_is_not_known(reduction: object) -> None:
-    assert reduction_of({"coriolis": {"bb3": {"reduction": reduction}}}, "bb3") is None
+    metrics = read_metrics({"coriolis": {"bb3": {"reduction": reduction}}})
+    assert metrics.coriolis.reduction("bb3") is None
 
 
 def trade(algorithm: str, control: str, swept: str, *triples: tuple[float, float, float]):
