@@ -25,8 +25,8 @@ from des_cli.kinematics.twist import SeatForms, SeatMotion
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits
 from des_cli.reduction.free.limit_rows import LimitRows
-from des_cli.reduction.free.program import SEAT_VARIABLES
 from des_cli.reduction.free.terms import squares
+from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import Windows
 from des_cli.solver.band import SymmetricBand
 from des_cli.solver.quadratic import minimise_quadratic

@@ -39,7 +39,7 @@ from des_cli.reduction.executable import (
     fit_executable,
     sample_spline,
 )
-from des_cli.reduction.free.program import SEAT_VARIABLES
+from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import Windows
 from des_cli.reduction.g_fit import G_TOLERANCE, Direction, Magnitude, fit_g
 from des_cli.solver.spline import FEWEST_INTERVALS, Ends, SplineGrid

@@ -258,13 +258,13 @@ class _Search(Generic[E]):
         m = self.m
         stiffness = self.dual / self.slack
         of_rows = stiffness[:m] + stiffness[m : 2 * m]
+        expansion = self.program.expand(
+            self.x, self.budget_dual, self.dual[2 * m :], stiffness[2 * m :]
+        )
         share = self.share
         halvings = 0
         while True:
-            expansion = self.program.expand(
-                self.x, self.budget_dual, self.dual[2 * m :], stiffness[2 * m :], share
-            )
-            system = self.program.system(expansion, of_rows, 0.0)
+            system = self.program.system(expansion, share, of_rows, 0.0)
             if system is not None or share == 0.0:
                 break
             halvings += 1
@@ -272,7 +272,7 @@ class _Search(Generic[E]):
         for shift in SHIFTS:
             if system is not None:
                 break
-            system = self.program.system(expansion, of_rows, shift)
+            system = self.program.system(expansion, share, of_rows, shift)
         self.share = min(1.0, 2.0 * share) if share > 0.0 else 0.5**SHARE_HALVINGS
         return expansion, system
 
@@ -356,15 +356,19 @@ class _Search(Generic[E]):
         merit = self._merit(self.at.cost, self.slack, self.budget_slack)
         noise = 1e-13 * abs(merit) + 1e-14
         length = longest
-        bend: Floats | None = None
+        correction: Floats | None = None
         for trial in range(HALVINGS):
-            move = length * path.step if bend is None else length * path.step + length**2 * bend
-            at = program.values(self.x + move)
+            move = length * path.step
+            if correction is not None:
+                move = move + length**2 * correction
+            x = self.x + move
+            at = program.values(x)
             if trial == 0 and length > SHORTEST_CORRECTED:
-                bend = self._bend(path, length, at)
-                if bend is not None:
-                    move = length * path.step + length**2 * bend
-                    at = program.values(self.x + move)
+                correction = self._correction(path, length, at)
+                if correction is not None:
+                    move = move + length**2 * correction
+                    x = self.x + move
+                    at = program.values(x)
             budget_slack = 1.0 - at.budgets
             rows = program.linear_change(move)
             slack = np.concatenate(
@@ -378,29 +382,43 @@ class _Search(Generic[E]):
             if inside:
                 reached = self._merit(at.cost, slack, budget_slack)
                 if reached <= merit + ARMIJO * length * slope + noise:
-                    self.x = self.x + move
-                    self.at, self.slack, self.budget_slack = at, slack, budget_slack
+                    self.x, self.at = x, at
+                    self.slack, self.budget_slack = slack, budget_slack
                     self.length = length
                     return True
             length *= 0.5
             if trial == 1:
-                bend = None  # a shorter step follows the boundary by itself
+                correction = None  # a shorter step follows the boundary by itself
         return False
 
-    def _bend(self, path: _Path, length: float, at: Values) -> Floats | None:
-        """Return the second-order correction of a step that misses its linear predictions."""
+    def _correction(self, path: _Path, length: float, at: Values) -> Floats | None:
+        """Return the second-order correction of a step that misses its linear predictions.
+
+        Parameters
+        ----------
+        path : _Path
+        length : float
+            Of the step, 0 to 1.
+        at : Values
+            Where it leads.
+
+        Returns
+        -------
+        (N,) array or None
+            What the square of a length is times; None where the predictions hold.
+        """
         local_slack = self.slack[2 * self.m :]
         predicted = self.at.budgets - length * path.budget_change
-        missed = np.maximum(at.budgets - predicted, 0.0)
+        excess = np.maximum(at.budgets - predicted, 0.0)
         local = np.maximum(at.local - (self.at.local + length * path.local_change), 0.0)
-        bend: Floats | None = None
+        correction: Floats | None = None
         if np.any(local > OVERSHOOT * local_slack):
-            push = self.dual[2 * self.m :] / local_slack * local
-            bend = -path.border.solve(path.expansion.local_adjoint(push)) / length**2
-        if np.any(missed > OVERSHOOT * self.budget_slack):
-            back = path.border.correction(missed) / length**2
-            bend = back if bend is None else bend + back
-        return bend
+            force = path.expansion.local_adjoint(self.dual[2 * self.m :] / local_slack * local)
+            correction = -path.border.solve(force) / length**2
+        if np.any(excess > OVERSHOOT * self.budget_slack):
+            of_budgets = path.border.correction(excess) / length**2
+            correction = of_budgets if correction is None else correction + of_budgets
+        return correction
 
 
 class _Path:
@@ -439,10 +457,10 @@ class _Border:
             return plain
         return np.asarray(plain - self._answers @ (self._small @ (self._gradients.T @ plain)))
 
-    def correction(self, missed: Floats) -> Floats:
+    def correction(self, excess: Floats) -> Floats:
         """Return the shortest move, in the Hessian's norm, that lowers the budgets by so much."""
         inverse = np.linalg.pinv(self._between, rcond=1e-12)  # a gradient may vanish
-        return np.asarray(-self._answers @ (inverse @ missed))
+        return np.asarray(-self._answers @ (inverse @ excess))
 
 
 def _longest(values: Floats, change: Floats) -> float:

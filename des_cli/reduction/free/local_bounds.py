@@ -68,9 +68,9 @@ class ComponentBound:
 
     def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers, (36, m)."""
-        return curvature_of(seat, {"force": self.push(multiplier)})
+        return curvature_of(seat, {"force": self.force_multiplier(multiplier)})
 
-    def push(self, multiplier: Floats) -> Floats:
+    def force_multiplier(self, multiplier: Floats) -> Floats:
         """Return the force's multipliers, (3, m), of the rows', (rows, m)."""
         return np.asarray((self.direction / self.scale[:, None]).T @ multiplier)
 
@@ -195,12 +195,12 @@ class OnsetBound:
 
     def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers (rows, count), (36, 2 count)."""
-        return curvature_of(seat, {"force": self.push(multiplier)})
+        return curvature_of(seat, {"force": self.force_multiplier(multiplier)})
 
-    def push(self, multiplier: Floats) -> Floats:
+    def force_multiplier(self, multiplier: Floats) -> Floats:
         """Return the force's multipliers, (3, 2 count), of the rows', (rows, count)."""
-        push = self.direction.T @ multiplier
-        return np.concatenate([-push, push], axis=1)
+        second = self.direction.T @ multiplier  # of the second point; the first has its negative
+        return np.concatenate([-second, second], axis=1)
 
     def along(self, change: Floats) -> Floats:
         """Return what a change of the force, (3, 2 count), changes of the rows."""

@@ -32,8 +32,9 @@ from des_cli.reduction.free.local_bounds import (
     NormBound,
     OnsetBound,
 )
-from des_cli.reduction.free.program import SEAT_VARIABLES, FreeSeat, MotionProblem
+from des_cli.reduction.free.motion_problem import FreeSeat, MotionProblem
 from des_cli.reduction.free.terms import JointBudget, Quantity, Term
+from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import JOINTS as COMPONENTS
 from des_cli.reduction.free.windows import Windows
 from des_cli.reduction.reference import sample_motion, sample_sides

@@ -135,6 +135,18 @@ class JointBudget:
     off: Floats
     floor: float = 0.0
 
+    def residual(self, deviation: Floats, at: slice) -> Floats:
+        """Return how far the angles are from the reference's, (3, m) [rad].
+
+        Parameters
+        ----------
+        deviation : (3, m) array
+            Of the angles from the base at points [rad].
+        at : slice
+            Which points of all.
+        """
+        return np.asarray(self.off[:, at] + deviation)
+
 
 def square(residual: Floats) -> float:
     """Return the sum of squares."""

@@ -8,7 +8,7 @@ import pytest
 from des_cli.kinematics.response import respond_on
 from des_cli.model.motion import Motion
 from des_cli.reduction.free.asked import Asked, is_rough
-from des_cli.reduction.free.program import SEAT_VARIABLES
+from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import Windows
 from des_cli.solver.spline import GAUSS, SplineGrid
 from tests.support.free_motions import task_of
