@@ -77,7 +77,7 @@ def respond_as_asked(machine: Machine, seat: Seat, asked: DesiredMotion) -> Resp
 
 
 def with_shortfall(response: Response, shortfall: Shortfall | None) -> Response:
-    """Return a response of a joint motion with what was asked for and not made."""
+    """Return a response of a joint motion with the shortfall added."""
     if shortfall is None:
         return response
     return replace(

@@ -141,8 +141,8 @@ def measure_offset(t: Floats, command: GCommand, response: Response) -> GOffset:
     ]
     rates: list[float | None] = [None, None]
     if command.rates is not None:
-        wanted = np.stack([command.rates.start, command.rates.end], axis=1)
-        rates = [_rms(t, (response.seat_rate - wanted)[..., axis]) for axis in (0, 1)]
+        commanded = np.stack([command.rates.start, command.rates.end], axis=1)
+        rates = [_rms(t, (response.seat_rate - commanded)[..., axis]) for axis in (0, 1)]
     return GOffset(_rms(t, off), float(off[k, side]), float(t[k + side]), *onset, *rates)
 
 
@@ -166,16 +166,16 @@ def _fit(task: _Task, asked: Floats) -> ExecutableSpline:
 
 def _in_turns(task: _Task, grid: SplineGrid, control: Floats, asked: Floats) -> Floats:
     """Return the control points at which arm and gimbals suit each other."""
-    there = _asked_at(task.t, asked, Windows(grid, SEAT_VARIABLES).times())
-    direction = Direction(asked_directions(there).T)
+    at_points = _asked_at(task.t, asked, Windows(grid, SEAT_VARIABLES).times())
+    direction = Direction(asked_directions(at_points).T)
     arm, gimbals = _holding("fork", "cab"), _holding("arm")
-    before = np.zeros((3, len(there)))
+    before = np.zeros((3, len(at_points)))
     for _ in range(TURNS):
         found = fit_g(grid, control, task.forms, direction, task.limits, gimbals)
         if np.max(np.abs(found.force - before)) < G_TOLERANCE:
             break
         before = found.force
-        magnitude = _magnitude_along(found.force, (there * PILOT).T, task.machine.gravity)
+        magnitude = _magnitude_along(found.force, (at_points * PILOT).T, task.machine.gravity)
         control = fit_g(grid, found.control, task.forms, magnitude, task.limits, arm).control
     return found.control
 
@@ -212,7 +212,7 @@ def _first_guess(task: _Task, grid: SplineGrid, asked: Floats) -> Floats:
 def _slewed(rate: Floats, step: float, acceleration: float) -> Floats:
     """Return the largest rates below given ones that change no faster than a limit.
 
-    So the arm is early on the way down and late on the way up: never faster than wanted.
+    So the arm is early on the way down and late on the way up: never faster than commanded.
     """
     most = acceleration * step * np.arange(len(rate))
     slower = np.minimum.accumulate(rate - most) + most
@@ -238,8 +238,8 @@ def _with_rates(t: Floats, command: GCommand) -> Floats:
     """Return the asked G along the axes that the rates beside it turn, (n - 1, 2, 3) [g]."""
     if command.rates is None:
         return command.sides
-    wanted = np.stack([command.rates.start, command.rates.end], axis=1)
-    rotation = washed_rotation(np.diff(t), wanted, command.washout)
+    commanded = np.stack([command.rates.start, command.rates.end], axis=1)
+    rotation = washed_rotation(np.diff(t), commanded, command.washout)
     force = command.sides * PILOT
     sides = (seen_turned(rotation[:-1], force[:, 0]), seen_turned(rotation[1:], force[:, 1]))
     return np.asarray(np.stack(sides, axis=1) * PILOT)

@@ -108,21 +108,21 @@ def pose_problem(profile: Profile, desired: Motion, asked: DesiredMotion | None 
     asked : DesiredMotion, optional
         What budgets are measured against, where it is not ``desired``.
     """
-    wanted = profile.reduction
+    reduction = profile.reduction
     # A weight on the whole vector is a weight on its length, whatever the axes: seat
     # axes then keep the arm's azimuth out of the arithmetic too.
-    isotropic = np.array_equal(wanted.r1, wanted.r1[0, 0] * np.eye(3))
+    isotropic = np.array_equal(reduction.r1, reduction.r1[0, 0] * np.eye(3))
     return Problem(
         desired=desired,
         chain=chain_of(profile.machine, profile.seat),
-        axes="seat" if isotropic else wanted.axes,
-        r1=wanted.r1,
-        r2=control_weight(wanted.control, wanted.r2),
-        tracking=wanted.tracking,
-        jacobian=wanted.jacobian,
-        held=np.array([joint in wanted.hold for joint in JOINTS]),
-        ends=wanted.ends,
-        machine=profile.machine if wanted.limits == "enforce" else None,
+        axes="seat" if isotropic else reduction.axes,
+        r1=reduction.r1,
+        r2=control_weight(reduction.control, reduction.r2),
+        tracking=reduction.tracking,
+        jacobian=reduction.jacobian,
+        held=np.array([joint in reduction.hold for joint in JOINTS]),
+        ends=reduction.ends,
+        machine=profile.machine if reduction.limits == "enforce" else None,
         gravity=profile.machine.gravity,
         asked=None if asked is None else asked.motion,
         shortfall=None if asked is None else asked.shortfall,

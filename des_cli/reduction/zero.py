@@ -113,13 +113,12 @@ def _largest(grid: Transcription, x: Floats, chosen: Flags) -> float:
 
 def _liveliness(grid: Transcription, x: Floats) -> float:
     """Return the squared rates of an iterate over those of the desired motion."""
-    rate = grid.points.gather(x)
-    made, wanted = grid.rates.value(rate), grid.points.rate
+    rate, desired = grid.rates.value(grid.points.gather(x)), grid.points.rate
     weight = grid.points.weight
-    size = float(weight @ np.sum(wanted**2, axis=1))
+    size = float(weight @ np.sum(desired**2, axis=1))
     if size == 0.0:
         return 1.0  # it is asked to stand still
-    return float(weight @ np.sum(made**2, axis=1)) / size
+    return float(weight @ np.sum(rate**2, axis=1)) / size
 
 
 def _solution(grid: Transcription, outcome: Outcome, search: Search) -> Solution:

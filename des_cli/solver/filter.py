@@ -48,38 +48,38 @@ class Filter:
         """Forget everything: the costs of another barrier are no measure."""
         self._points = []
 
-    def noise(self, here: Trial) -> float:
+    def noise(self, current: Trial) -> float:
         """Return the difference of costs below which their rounding decides."""
-        return 1e-13 * (abs(here.cost) + self.unit)
+        return 1e-13 * (abs(current.cost) + self.unit)
 
-    def accepts(self, here: Trial, there: Trial, length: float, slope: float) -> bool:
+    def accepts(self, current: Trial, trial: Trial, length: float, slope: float) -> bool:
         """Return whether a trial is acceptable; remember what it was accepted from.
 
         Parameters
         ----------
-        here, there : Trial
+        current, trial : Trial
             The present point, and the trial.
         length : float
             Of the step between them.
         slope : float
             Derivative of the cost along the step.
         """
-        if not np.isfinite(there.cost) or there.violation > self.worst:
+        if not np.isfinite(trial.cost) or trial.violation > self.worst:
             return False
         if any(
-            there.violation >= (1.0 - MARGIN) * old.violation
-            and there.cost >= old.cost - MARGIN * old.violation
+            trial.violation >= (1.0 - MARGIN) * old.violation
+            and trial.cost >= old.cost - MARGIN * old.violation
             for old in self._points
         ):
             return False
-        noise = self.noise(here)
-        steep = slope < 0.0 and length * (-slope / self.unit) ** STEEP > here.violation**SMALL
-        if here.violation <= self.small and steep:
-            return there.cost <= here.cost + ARMIJO * length * slope + noise
+        noise = self.noise(current)
+        steep = slope < 0.0 and length * (-slope / self.unit) ** STEEP > current.violation**SMALL
+        if current.violation <= self.small and steep:
+            return trial.cost <= current.cost + ARMIJO * length * slope + noise
         better = (
-            there.violation <= (1.0 - MARGIN) * here.violation
-            or there.cost <= here.cost - MARGIN * here.violation + noise
+            trial.violation <= (1.0 - MARGIN) * current.violation
+            or trial.cost <= current.cost - MARGIN * current.violation + noise
         )
         if better:
-            self._points.append(here)
+            self._points.append(current)
         return better

@@ -157,8 +157,8 @@ class _Search:
             if np.max(np.abs(self.rows.value(x)) / bounds) <= FAR:
                 break
             stiffness = weight / bounds**2
-            push = self.linear - self.rows.adjoint(stiffness * still)
-            x = self._solve(self._factorise(stiffness), push)
+            right = self.linear - self.rows.adjoint(stiffness * still)
+            x = self._solve(self._factorise(stiffness), right)
             weight *= 10.0
         return x
 
@@ -209,8 +209,8 @@ class _Local:
         search, m = self._search, self._m
         if self._factor is None:
             self._factor = search._factorise(self._stiffness[:m] + self._stiffness[m:])
-        push = target / self._slack - self._stiffness * self.missing
-        force = self._gradient + search.rows.adjoint(push[:m] - push[m:])
+        multiplier = target / self._slack - self._stiffness * self.missing
+        force = self._gradient + search.rows.adjoint(multiplier[:m] - multiplier[m:])
         move = search._solve(self._factor, -force)
         rows = search.rows.change(move)
         change = self.missing + np.concatenate([-rows, rows])

@@ -60,7 +60,7 @@ class Side:
         """Return what the eliminated slack adds to the Hessian, z / s."""
         return self.dual / self.slack
 
-    def push(self, mu: float, excess: Floats) -> Floats:
+    def barrier_multiplier(self, mu: float, excess: Floats) -> Floats:
         """Return the signed multiplier after a step that leaves the value alone."""
         return self.sign * (self.weight * mu + self.dual * excess) / self.slack
 

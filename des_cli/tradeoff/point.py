@@ -61,16 +61,16 @@ def trade_point(
         If the reduction asks for things that exclude each other.
     """
     run = reduce_profile(profile, on_iteration=on_iteration, on_stage=on_stage)
-    wanted = profile.reduction
+    reduction = profile.reduction
     swept, value = (
-        (wanted.budget[0].metric, wanted.budget[0].most)
-        if wanted.budget
-        else ("r2", _weight(wanted.r2))
+        (reduction.budget[0].metric, reduction.budget[0].most)
+        if reduction.budget
+        else ("r2", _weight(reduction.r2))
     )
     status, message = _outcome(run)
     point = TradePoint(
         "optimum",
-        wanted.control,
+        reduction.control,
         swept,
         value,
         status,
@@ -99,7 +99,7 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
     if profile.reduction.limits == "enforce":
         desired, trouble = nearest_executable(profile.machine, desired)
         desired = asked.motion if trouble else desired
-    wanted = replace(
+    reduction = replace(
         profile.reduction,
         control="scalar",
         algorithm="report-sweep",
@@ -110,10 +110,10 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
         limits="warn",
         budget=(),
     )
-    profile = replace(profile, reduction=wanted)
+    profile = replace(profile, reduction=reduction)
     problem = pose_problem(profile, desired, asked)
     points = []
-    for r2 in weights or (_weight(wanted.r2),):
+    for r2 in weights or (_weight(reduction.r2),):
         weighed = replace(problem, r2=np.array([r2]))
         points.append(_study_point(profile, asked, weighed, r2))
     for p in CONSTANT_FACTORS:

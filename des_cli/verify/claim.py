@@ -110,8 +110,8 @@ class Claim:
     @cached_property
     def before(self) -> Felt:
         """What is asked for at all states."""
-        made = self.chain_before.along(self.asked)
-        return as_asked(made, self.profile, self.shortfall)
+        felt = self.chain_before.along(self.asked)
+        return as_asked(felt, self.profile, self.shortfall)
 
     @cached_property
     def executable(self) -> Felt:

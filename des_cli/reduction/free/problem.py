@@ -130,8 +130,8 @@ class FreeTask:
         """Return what is asked of the seat, at both ends of every interval."""
         if self.response is not None:
             return self.response
-        made = respond_on(self.chain, self.machine.gravity, self.reference)
-        return with_shortfall(made, self.shortfall)
+        response = respond_on(self.chain, self.machine.gravity, self.reference)
+        return with_shortfall(response, self.shortfall)
 
     def rough(self, grid: SplineGrid) -> bool:
         """Return whether what is asked is faster than the knots of a grid."""
