@@ -52,7 +52,7 @@ def make_desired(profile: Profile, *, divide: bool = True) -> DesiredMotion:
         return _from_joints(chain, profile, profile.command)
     if isinstance(profile.command, BodyRates):
         return _from_body_rates(chain, profile, profile.command, divide=divide)
-    raise TypeError("an asked G takes the machine's limits: reduction.desired.find_desired")
+    raise TypeError("a requested G takes the machine's limits: reduction.desired.find_desired")
 
 
 def _from_joints(chain: Chain, profile: Profile, command: JointCommands) -> DesiredMotion:

@@ -85,8 +85,8 @@ def _with_budgets(problem: Problem, budgets: Sequence[Budget]) -> Transcription:
     for budget in budgets:
         most = budget.most * (1.0 - ROOM)
         if budget.metric == "attitude_error_max_deg":
-            asked = problem.reference.angle, problem.shortfall
-            grid.rows.append(AttitudeRows(problem.chain, *asked, most))
+            requested = problem.reference.angle, problem.shortfall
+            grid.rows.append(AttitudeRows(problem.chain, *requested, most))
         elif budget.metric == "seat_angular_acceleration_peak_ratio":
             grid.rows.append(SeatAccelerationRows(grid, most))
         else:

@@ -5,8 +5,8 @@ Over the control points, with f the specific force at the seat (``kinematics.twi
     minimise 1/2 int |r(f(theta, theta', theta''))|^2 + sum_j (mu theta_j''' / a_j)^2 dt
 
 inside the limits of every joint, by the method of Levenberg and Marquardt: each step is a
-convex quadratic program. Two residuals r share the work: the arm is to make the asked
-magnitude, fork and cab the asked direction of whatever force there is. All relative and
+convex quadratic program. Two residuals r share the work: the arm is to make the requested
+magnitude, fork and cab the requested direction of whatever force there is. All relative and
 tangential terms are in f, and a whole motion is found at a time: sample by sample it would
 be a recursion in the accelerations, which a seat that is away from the gimbals' centre does
 not survive (at 10 rad/s, a metre of offset makes ten times the error that it takes away).
@@ -79,7 +79,7 @@ class Magnitude:
     Parameters
     ----------
     size : (points,) array
-        Asked |G| [g].
+        Requested |G| [g].
     """
 
     size: Floats
@@ -96,7 +96,7 @@ class Magnitude:
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """What is missing to the asked direction e of a force as long: ``f - |f| e``.
+    """What is missing to the requested direction e of a force as long: ``f - |f| e``.
 
     For small errors it is the part of f across e; the opposite of e, which has no such
     part, is the worst.

@@ -55,7 +55,7 @@ class Found:
 
 def find_motion(
     profile: Profile,
-    asked: DesiredMotion,
+    requested: DesiredMotion,
     target: Motion,
     report: Report | None = None,
     on_stage: OnStage = untold,
@@ -66,7 +66,7 @@ def find_motion(
     ----------
     profile : Profile
         Consistent (``consistency.require_consistent``).
-    asked : DesiredMotion
+    requested : DesiredMotion
         What the profile asks for: the record.
     target : Motion
         What the motion begins from: the same, or what conditioning made of it.
@@ -78,13 +78,15 @@ def find_motion(
     reduction = profile.reduction
     on_stage("motion inside the limits")
     if moves_freely(reduction):
-        task = FreeTask.of(profile, asked.motion, target, asked.shortfall)
+        task = FreeTask.of(profile, requested.motion, target, requested.shortfall)
         free = find_free_motion(task, report, on_stage)
         problem = pose_problem(profile, free.desired)
         return Found(free.desired, free.seat, problem, None, free.solution, free.budgets)
     desired, trouble = executable_motion(profile, target)
-    problem = pose_problem(profile, desired, asked)
-    change = Change.between(asked.motion, desired, problem.chain, problem.gravity, asked.shortfall)
+    problem = pose_problem(profile, desired, requested)
+    change = Change.between(
+        requested.motion, desired, problem.chain, problem.gravity, requested.shortfall
+    )
     refusal = change.refusal(reduction)
     if trouble or refusal:
         status: Status = "infeasible" if trouble else "changed"

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from des_cli.kinematics.response import respond, respond_as_asked
+from des_cli.kinematics.response import respond, respond_as_requested
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
@@ -214,7 +214,7 @@ def _measure(
     profile: Profile, asked: DesiredMotion, problem: Problem, solution: Solution
 ) -> dict[str, Any]:
     """Measure a baseline as the pipeline measures an optimum."""
-    before = respond_as_asked(profile.machine, profile.seat, asked)
+    before = respond_as_requested(profile.machine, profile.seat, asked)
     after = respond(profile.machine, profile.seat, solution.modified)
     violations = find_violations(profile.machine, solution.modified, "modified")
     against = compare(problem, solution.modified)

@@ -16,7 +16,7 @@ would pass unseen:
     not checked; costs, dynamics and first-order conditions are, for the problem as posed.
 The motion that is asked for
     Angles and rates of the joints as ``kinematics`` found them from the profile, and the
-    ``Shortfall``, what they do not make of it. Recorded rates and an asked G are
+    ``Shortfall``, what they do not make of it. Recorded rates and a requested G are
     compared with as they are in the profile.
 
 ``tests/verify/test_felt.py`` keeps the imports.

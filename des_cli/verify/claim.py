@@ -13,8 +13,8 @@ from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
-from des_cli.verify.asked import as_asked
 from des_cli.verify.felt import Felt, SeatChain
+from des_cli.verify.requested import as_requested
 
 ROUGH = 1e-3
 """Share of the seat rate's square that its samples have beside the mean of their neighbours,
@@ -28,7 +28,7 @@ class Claim:
     Parameters
     ----------
     profile : Profile
-    asked : Motion
+    requested : Motion
         What the profile asks for.
     desired : Motion
         The same, or the nearest motion inside the limits.
@@ -48,7 +48,7 @@ class Claim:
     """
 
     profile: Profile
-    asked: Motion
+    requested: Motion
     desired: Motion
     seat: Seat
     solution: Solution
@@ -80,7 +80,7 @@ class Claim:
     @cached_property
     def rough(self) -> bool:
         """Whether what was asked for is not smooth from sample to sample."""
-        count = len(self.asked.step)
+        count = len(self.requested.step)
         rate = np.concatenate([self.before.rate[:, :count], self.before.rate[:, -1:]], axis=1)
         if rate.shape[1] < 3:
             return False
@@ -90,12 +90,12 @@ class Claim:
     @cached_property
     def weight(self) -> Floats:
         """Weights of the trapezoidal rule on the states of a motion, (2 (n - 1),) [s]."""
-        return np.tile(0.5 * self.asked.step, 2)
+        return np.tile(0.5 * self.requested.step, 2)
 
     @cached_property
     def duration(self) -> float:
         """Length of the motion [s]."""
-        return float(self.asked.t[-1] - self.asked.t[0])
+        return float(self.requested.t[-1] - self.requested.t[0])
 
     @cached_property
     def chain(self) -> SeatChain:
@@ -110,13 +110,13 @@ class Claim:
     @cached_property
     def before(self) -> Felt:
         """What is asked for at all states."""
-        felt = self.chain_before.along(self.asked)
-        return as_asked(felt, self.profile, self.shortfall)
+        felt = self.chain_before.along(self.requested)
+        return as_requested(felt, self.profile, self.shortfall)
 
     @cached_property
     def executable(self) -> Felt:
         """The desired motion at all states."""
-        if self.desired is self.asked and self.shortfall is None:
+        if self.desired is self.requested and self.shortfall is None:
             return self.before
         return self.chain_before.along(self.desired)
 

@@ -13,7 +13,7 @@ from des_cli.kinematics.attitude import rotation
 from des_cli.kinematics.chain import chain_of, joint_axes, seat_rotation
 from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.orientation import damped_inverse_rates
-from des_cli.kinematics.response import respond, respond_as_asked
+from des_cli.kinematics.response import respond, respond_as_requested
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.profile import BodyRates, JointCommands, Profile
@@ -285,20 +285,20 @@ class TestBodyRates:
         profile = body_profile(t, command, (0.1, 0.2, -0.1))
         desired = make_desired(profile)
         assert desired.shortfall is not None
-        asked = respond_as_asked(DES, Seat(), desired)
+        requested = respond_as_requested(DES, Seat(), desired)
         recorded = np.stack([command.start, command.end], axis=1)
-        np.testing.assert_allclose(asked.seat_rate, recorded, atol=1e-12)
+        np.testing.assert_allclose(requested.seat_rate, recorded, atol=1e-12)
         slope = (command.end - command.start) / 0.01
         made = respond(DES, Seat(), desired.motion)
         held = np.any(np.abs(desired.shortfall.seat_rate) > 1e-9, axis=(1, 2))
         assert 20 < held.sum() < 110
         np.testing.assert_allclose(
-            asked.seat_angular_acceleration[held],
+            requested.seat_angular_acceleration[held],
             np.broadcast_to(slope[held, None], (held.sum(), 2, 3)),
             atol=1e-10,
         )
         np.testing.assert_array_equal(
-            asked.seat_angular_acceleration[~held][:, 0],
+            requested.seat_angular_acceleration[~held][:, 0],
             made.seat_angular_acceleration[~held][:, 0],
         )
         flown = seat_rotation(chain_of(DES, Seat()), desired.motion.angle)

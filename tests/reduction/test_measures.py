@@ -135,12 +135,12 @@ def test_what_bends_a_hessian_is_exact(grid, x):
 @pytest.mark.parametrize("name", [n for n in INTEGRALS if not n.startswith("mean")])
 def test_a_reference_of_its_own_whose_rates_step(name, grid, x, pose, wave):
     # What the profile asks for is not what the machine starts from.
-    asked = wave([[0.5, 0.25, 0.1], [0.25, 0.3, 0.1], [0.2, -0.2, 0.1]], intervals=15)
-    start, end = asked.rate_start.copy(), asked.rate_end.copy()
+    requested = wave([[0.5, 0.25, 0.1], [0.25, 0.3, 0.1], [0.2, -0.2, 0.1]], intervals=15)
+    start, end = requested.rate_start.copy(), requested.rate_end.copy()
     start[7:] += 0.3
     end[7:] += 0.3
-    asked = Motion(asked.t, asked.angle, start, end)
-    grid = Transcription(replace(grid.problem, asked=asked))
+    requested = Motion(requested.t, requested.angle, start, end)
+    grid = Transcription(replace(grid.problem, requested=requested))
     value = metric(name, grid, x)
     measure = measure_of(grid, name, value)
     assert measure.value(x) == pytest.approx(1.0, rel=1e-8)
