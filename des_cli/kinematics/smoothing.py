@@ -161,8 +161,9 @@ def _low_pass(values: Floats, rate: float, cutoff_hz: float) -> Floats:
     ----------
     values : (n, k) array
     rate : float
-        Samples a second.
+        Of the samples [1/s].
     cutoff_hz : float
+        [Hz]
     """
     from scipy.signal import butter, sosfiltfilt
 

@@ -33,7 +33,10 @@ BARRIERS = (FAR, 0.1)
 """First barriers of the starts from the desired motion: where there are several minima
 they lead to different ones."""
 
-EACH_START = 400  # Newton steps that a start may take on the coarsest grid
+EACH_START = 400
+"""Newton steps that a start may take on the coarsest grid, so that one that creeps leaves the
+others their share of all steps."""
+
 ROOM = 1e-6
 """Share of a budget that stays unspent, for the rounding of whoever measures it anew."""
 

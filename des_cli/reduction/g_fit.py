@@ -47,6 +47,7 @@ FEWEST_GAIN = 1e-4
 """Or a relative decrease of the cost below this, twice in a row."""
 
 MOST_STEPS = 25
+"""Steps of one fit at the most: the turns of arm and gimbals come back to it."""
 
 DAMPING = 1e-3
 """Of the first step: weight on the squared change of the rates, (g s/rad)^2."""

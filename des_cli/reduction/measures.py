@@ -28,6 +28,7 @@ class JointDeviation(Measure):
     ----------
     grid : Transcription
     budget : float
+        Largest ratio of the norms [1].
     """
 
     def __init__(self, grid: Transcription, budget: float) -> None:
@@ -74,6 +75,7 @@ class SeatRateDeviation(Measure):
     ----------
     grid : Transcription
     budget : float
+        Largest ratio of the norms [1].
     """
 
     def __init__(self, grid: Transcription, budget: float) -> None:
@@ -150,7 +152,7 @@ def mean_at_points(points: Points, half: Floats, sides: Floats) -> tuple[Floats,
     -------
     mean : (q, 3) array
     spread : float
-        Integral of the squared distance of the sides from the mean.
+        Integral of the squared distance of the sides from the mean [their unit squared, s].
     """
     where = np.concatenate([points.start, points.end])
     heavy = np.concatenate([half, half])

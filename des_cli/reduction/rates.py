@@ -19,9 +19,11 @@ singularity. Nearer to it phi changes with the angles by more than 1 / 0.3 in ea
 second, and an optimum would be a matter of that and not of the Coriolis."""
 
 DAMPING = 0.3
-"""Damping factor on the singularity itself."""
+"""Damping factor on the singularity itself: the gain of the inverse is then at most 1 / 0.6."""
 
 COMPLEX_STEP = 1e-30
+"""Step [rad] of the derivative Im f(x + ih) / h (Squire and Trapp, SIAM Review 40, 1998): no
+difference is taken, so that it may be as small as squares of it still are numbers."""
 
 
 class Rates(Protocol):

@@ -25,12 +25,20 @@ WITHIN = 0.5
 """Share of the tolerance that is allowed at samples: between them the Coriolis vector
 bulges by a part that falls with the square of the step."""
 
-# The penalty rho starts at this multiple of the mean running cost's weight over the
-# Coriolis it weighs, and grows where a round takes less than a quarter off.
 FIRST_PENALTY, GROWTH, ENOUGH = 1e2, 10.0, 0.25
+"""The penalty rho starts at this multiple of the mean running cost's weight over the
+cross-coupling that it weighs, and grows by GROWTH where a round leaves more than the share
+ENOUGH (Nocedal and Wright, framework 17.3)."""
+
 LARGEST_PENALTY = 1e10
+"""Beyond it the penalty would leave six of a double's sixteen digits to the rest of the cost."""
+
 MOST_ROUNDS = 40
-EACH_ROUND = 300  # Newton steps in one round, at the most
+"""Rounds at the most: with ``PATIENCE`` a limit that is not met where anything is gained."""
+
+EACH_ROUND = 300
+"""Newton steps in one round, at the most."""
+
 PATIENCE = 6
 """Rounds without progress after which zero counts as out of reach."""
 

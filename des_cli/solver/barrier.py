@@ -51,16 +51,20 @@ BUDGET_WEIGHT = 0.1
 """Weight of a budget's barrier, in rows per row of the local inequalities."""
 
 FRACTION = 0.995
-"""Of the way to the nearest boundary that a step may take."""
+"""Of the way to the nearest boundary that a step may take: the usual value (Nocedal and
+Wright, section 19.2)."""
 
 SPREAD = 1e2
-"""A multiplier stays within this factor of barrier over slack."""
+"""A multiplier stays within this factor of barrier over slack, as Waechter and Biegler keep it
+(eq. 16), but closer: 1e10 there guards convergence, and a hundred also the centring."""
 
 ARMIJO = 1e-4
-"""Share of the predicted decrease that a step must bring."""
+"""Share of the predicted decrease that a step must bring, as is usual (Nocedal and Wright,
+section 3.1)."""
 
 LEAST_SLACK = 1e-3
-"""Share of a nonlinear slack that a step must leave."""
+"""Share of a nonlinear slack that a step must leave: of what its linear prediction leaves at
+the least, 1 - ``FRACTION``, a fifth, for what the prediction misses."""
 
 OVERSHOOT = 0.1
 """A budget or a local bound that misses its linear prediction by this share of its slack is
@@ -71,15 +75,19 @@ SHORTEST_CORRECTED = 0.05
 
 CONTRACTION, SUPERLINEAR = 0.3, 1.5
 """The barrier falls to this share, or to this power of the gap, once its problem is solved
-to within ``CENTRED`` times the gap."""
+to within ``CENTRED`` times the gap: by the rule of Waechter and Biegler (eq. 7), who take
+0.2 and 1.5."""
 
 CENTRED = 3.0
+"""Error of a barrier's problem, over its gap, at which it counts as solved: less than the 10 of
+Waechter and Biegler (kappa_epsilon), for without a filter each iterate is to stay central."""
 
 HALVINGS = 25
-"""Of a step, before the search gives up."""
+"""Of a step, before the search gives up: 2^-25 of it is 3e-8, and moves nothing."""
 
 SHARE_HALVINGS = 5
-"""Of the share of the curvature, before it is left out altogether."""
+"""Of the share of the curvature, before it is left out altogether: a step with a thirtieth of
+it is as good as one without. Halves, so that shares are exact in binary."""
 
 SHIFTS = (1e-12, 1e-10, 1e-8, 1e-6)
 """Relative shifts of the diagonal, tried where even the convex part is singular to rounding."""
@@ -133,6 +141,8 @@ class Outcome:
     budget_multiplier : (j,) array
         What a unit of each budget is worth.
     gap, optimality : float
+        Complementarity, in the unit of the cost, and violation of the first-order conditions,
+        relative to the gradients at the start.
     steps : tuple of Step
     """
 

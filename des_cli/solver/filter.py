@@ -12,11 +12,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Sufficient decrease of the cost (Armijo); margins of the filter; exponents of
-# the switching condition; bounds on the violation relative to the first one.
-ARMIJO, MARGIN = 1e-4, 1e-5
+ARMIJO = 1e-4
+"""Share of the predicted decrease of the cost that a step must bring, as is usual (Nocedal and
+Wright, Numerical Optimization, section 3.1): any step that is not far too long has it."""
+
+MARGIN = 1e-5
+"""Share of the violation by which a trial must be better than a point of the filter, gamma of
+Waechter and Biegler: small, and enough that trials do not pile up in front of a point."""
+
 STEEP, SMALL = 2.3, 1.1
+"""Exponents of the predicted decrease and of the violation in the switching condition, s_phi
+and s_theta of Waechter and Biegler, whose proof needs s_phi > 2 s_theta > 2."""
+
 WORST_VIOLATION, SMALL_VIOLATION = 1e4, 1e-4
+"""Violation that no trial may have, and that counts as small, relative to the first one or to
+one: theta_max and theta_min of Waechter and Biegler."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +45,7 @@ class Filter:
     violation : float
         Of the start.
     unit : float
-        Size of a cost that counts.
+        Size of a cost that counts, in the cost's unit.
     """
 
     def __init__(self, violation: float, unit: float) -> None:

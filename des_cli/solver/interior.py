@@ -29,33 +29,42 @@ from des_cli.solver.newton_system import Border, Dynamics, NewtonSystem, transpo
 from des_cli.solver.program import Expansion, Program
 from des_cli.solver.slacks import Side, longest_step
 
-# Fraction of the way to the boundary that a step may take, at the least
-# (Waechter and Biegler, eq. 8).
 BOUNDARY_FRACTION = 0.99
-# The barrier parameter falls to min(FACTOR * mu, mu ** POWER) once the barrier
-# problem is solved to MARGIN * mu (ibid., eq. 7).
+"""Fraction of the way to the boundary that a step may take, at the least (Waechter and
+Biegler, eq. 8): 1 - mu, where that is more, lets the last steps be full ones."""
+
 BARRIER_FACTOR, BARRIER_POWER, BARRIER_MARGIN = 0.2, 1.5, 10.0
-# Violation, relative to the cost's rounding, that counts as none.
+"""The barrier parameter falls to min(FACTOR * mu, mu ** POWER) once the barrier problem is
+solved to MARGIN * mu (ibid., eq. 7): superlinearly at the end, and not before it is centred."""
+
 FEASIBLE = 1e-3
-# The line search gives up below this step.
+"""Violation, relative to the cost's rounding, that counts as none."""
+
 SHORTEST_STEP = 1e-10
-# Where the exact Hessian is not convex on the dynamics, its curvature part is
-# taken in by this much less at a time until it is, and in the end left out: what
-# remains is a Gauss-Newton Hessian. Between the two it converged in a third of
-# the steps that a shifted diagonal needed (95 against 309 on the Cobra per joint,
-# BB3, 500 intervals, at the first price of a 5 % budget). The next step begins
-# with SHARE_RECOVERY times what worked.
+"""Length below which the line search gives up: what it would change is rounding."""
+
 SHARE_DECAY, LEAST_SHARE, SHARE_RECOVERY = 0.7, 0.05, 2.0
-# Shifts of the diagonal, relative to the problem's scale, tried after that.
+"""Where the exact Hessian is not convex on the dynamics, its curvature part is taken in by
+this much less at a time until it is, and in the end left out: what remains is a Gauss-Newton
+Hessian. Between the two it converged in a third of the steps that a shifted diagonal needed
+(95 against 309 on the Cobra per joint, BB3, 500 intervals, at the first price of a 5 %
+budget). The next step begins with SHARE_RECOVERY times what worked."""
+
 SHIFTS = (0.0, 1e-6, 1e-4, 1e-2, 1.0, 1e2)
-# A budget's barrier weighs as much as this share of all the local inequalities together:
-# with a weight of one the first steps would spend it to the last, and the rest creep
-# along its curved boundary.
+"""Shifts of the diagonal, relative to the problem's scale, tried after that, from none to a
+hundred times that scale, where a step is nearly one of steepest descent."""
+
 BUDGET_WEIGHT = 0.1
-# Multiplier that a budget starts with at the least.
+"""A budget's barrier weighs as much as this share of all the local inequalities together:
+with a weight of one the first steps would spend it to the last, and the rest creep along its
+curved boundary."""
+
 LEAST_PRICE = 1e-8
-# Errors within which a result that misses the tolerance may still be used.
+"""Multiplier that a budget starts with at the least: inside, multipliers are positive."""
+
 ACCEPTABLE = 1e-6
+"""Errors within which a result that misses the tolerance may still be used: 1e-6 rad of an
+angle mean nothing to a machine."""
 
 Report: TypeAlias = Callable[[Iteration], None]
 Ending: TypeAlias = Literal["converged", "acceptable", "iteration-limit", "diverged"]
@@ -73,6 +82,8 @@ class Outcome:
     multiplier : (n - 1, 3) array
         Of the dynamics.
     cost, optimality, infeasibility : float
+        Violation of the first-order conditions, scaled and per unit time, and of the
+        dynamics [rad] and the scaled inequalities.
     log : tuple of Iteration
     prices : (s,) array
         Multipliers of the budgets.

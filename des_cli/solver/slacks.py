@@ -9,7 +9,8 @@ import numpy as np
 from des_cli.model.arrays import Floats
 
 FIRST_SLACK = 1e-2
-"""Slacks start at least this far inside their bounds."""
+"""Slacks start at least this far inside their bounds, in the rows' unit: kappa_1 of Waechter
+and Biegler (section 3.6), who move a start as far from a bound."""
 
 
 @dataclass

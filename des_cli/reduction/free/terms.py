@@ -34,7 +34,7 @@ class Term:
     reference : (3, p) array, optional
         At all points; None for zero.
     floor : float
-        What the term has beside the points' squares, whatever the motion.
+        What the term has beside the points' squares, whatever the motion, in their unit.
     """
 
     quantity: Quantity
