@@ -18,8 +18,8 @@ The method is the primal-dual barrier method of Fiacco and McCormick with Newton
 - A budget's barrier has the weight of many rows (``BUDGET_WEIGHT``). One row among ten
   thousand would let the budget collapse first, and the path would follow its boundary.
 - The boundary of a budget, or of a local bound, is curved. Where a full step would overrun
-  it, the step is bent back, along H^-1 grad g for a budget, until it meets its linear
-  prediction (second-order correction). Without that, a slack of 1e-8 halves every step.
+  it, the step is corrected to second order, along H^-1 grad g for a budget, so that it
+  meets its linear prediction. Without that, a slack of 1e-8 halves every step.
 - The Hessian is exact where that is positive definite; else its curvature part, which
   alone can be indefinite, counts by a share that is halved until it is.
 - The fraction to the boundary does not follow the barrier, and a multiplier stays within
@@ -361,7 +361,7 @@ class _Search(Generic[E]):
         return cost - self.mu * barrier
 
     def _search(self, path: _Path, slope: float, longest: float) -> bool:
-        """Search along a step, bent back where it would overrun a curved boundary."""
+        """Search along a step, corrected where it would overrun a curved boundary."""
         program, m = self.program, self.m
         merit = self._merit(self.at.cost, self.slack, self.budget_slack)
         noise = 1e-13 * abs(merit) + 1e-14
