@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.response import respond, respond_as_asked
+from des_cli.kinematics.response import respond, respond_as_requested
 from des_cli.kinematics.smoothing import smooth_command
 from des_cli.model.metric import Budget
 from des_cli.model.motion import DesiredMotion, Motion
@@ -102,7 +102,7 @@ def reduce_profile(
     most = profile.reduction.budget_of_record
     profile = replace(profile, reduction=replace(profile.reduction, budget=found.budgets))
     modified = found.solution.modified
-    before = respond_as_asked(profile.machine, profile.seat, asked)
+    before = respond_as_requested(profile.machine, profile.seat, asked)
     after = respond(profile.machine, found.seat, modified)
     measured = Measured(
         profile=profile,
@@ -180,7 +180,7 @@ def _checks(
         return ()
     claim = Claim(
         profile=_on_rows(profile, asked),
-        asked=asked.motion,
+        requested=asked.motion,
         desired=found.desired if found.posed is None else found.posed.desired,
         seat=found.seat,
         solution=found.solution,

@@ -52,8 +52,8 @@ class Console:
         """Take the value of ``--color``: auto, always or never."""
         if choice == "auto":
             # https://no-color.org: set and not empty, whatever the value.
-            wanted = not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
-            self.color = wanted and sys.stderr is not None and sys.stderr.isatty()
+            allowed = not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+            self.color = allowed and sys.stderr is not None and sys.stderr.isatty()
         else:
             self.color = choice == "always"
 
@@ -86,13 +86,13 @@ class Console:
         noun : str
             What they are, in the plural.
         """
-        wanted = self.verbosity > QUIET and os.environ.get("TERM") != "dumb"
-        terminal = wanted and sys.stderr is not None and sys.stderr.isatty()
+        allowed = self.verbosity > QUIET and os.environ.get("TERM") != "dumb"
+        terminal = allowed and sys.stderr is not None and sys.stderr.isatty()
         with StatusLine(sys.stderr if terminal else None, total=total, noun=noun) as self._line:
             yield self._line
 
     def follow(self, line: StatusLine, *, log: bool) -> Callable[[Iteration], None]:
-        """Return what takes a solver's iterations: the line, and the log if it is wanted."""
+        """Return what takes a solver's iterations: the line, and the log if it is asked for."""
 
         def note(iteration: Iteration) -> None:
             line.iteration(iteration)

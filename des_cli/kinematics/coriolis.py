@@ -130,7 +130,7 @@ def coriolis_curvature(
         heavy, fast = (np.ascontiguousarray(v[block].T) for v in (weight, rates))
         by_weight = (functions[:, None] * heavy).reshape(-1, heavy.shape[1])
         values = forms.from_weights.T @ by_weight
-        along, turned, bent = values[:3], values[3:12].reshape(3, 3, -1), values[12:]
+        along, turned, second = values[:3], values[3:12].reshape(3, 3, -1), values[12:]
         for pair, (j, k) in enumerate(PAIRS):
             rate_rate[block, j, k] = rate_rate[block, k, j] = along[pair]
         for angle in range(3):
@@ -139,9 +139,9 @@ def coriolis_curvature(
             angle_rate[block, angle, 1] = with_arm_fork * fast[0] + with_fork_cab * fast[2]
             angle_rate[block, angle, 2] = with_arm_cab * fast[0] + with_fork_cab * fast[1]
         products = np.stack([fast[j] * fast[k] for j, k in PAIRS])
-        second = (bent.reshape(6, 3, -1) * products).sum(axis=1)
+        by_angles = (second.reshape(6, 3, -1) * products).sum(axis=1)
         for which, (a, b) in enumerate(_ANGLE_PAIRS):
-            angle_angle[block, a, b] = angle_angle[block, b, a] = second[which]
+            angle_angle[block, a, b] = angle_angle[block, b, a] = by_angles[which]
     return angle_angle, angle_rate, rate_rate
 
 

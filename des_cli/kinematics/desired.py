@@ -1,8 +1,9 @@
 """The desired motion of the joints: what a profile asks of a machine.
 
-Joint commands go through ``W = J theta'`` and back through the inverse about the
-commanded rates; body rates are integrated through the body-axis inverse, damped
-near the singularity and held inside the machine's rate limits.
+Joint commands are the motion already: ``W = J theta'`` of them, solved about the
+commanded rates, gives these back even on the singularity, so that nothing is solved.
+Body rates are integrated through the body-axis inverse, damped near the singularity
+and held inside the machine's rate limits.
 """
 
 from __future__ import annotations
@@ -19,7 +20,6 @@ from des_cli.kinematics.chain import Chain, chain_of, joint_axes, seat_rotation
 from des_cli.kinematics.coriolis import angular_acceleration_split
 from des_cli.kinematics.orientation import (
     body_jacobian,
-    damped_inverse_rates,
     smallest_singular_value,
 )
 from des_cli.kinematics.rate_field import RateField
@@ -52,7 +52,7 @@ def make_desired(profile: Profile, *, divide: bool = True) -> DesiredMotion:
         return _from_joints(chain, profile, profile.command)
     if isinstance(profile.command, BodyRates):
         return _from_body_rates(chain, profile, profile.command, divide=divide)
-    raise TypeError("an asked G takes the machine's limits: reduction.desired.find_desired")
+    raise TypeError("a requested G takes the machine's limits: reduction.desired.find_desired")
 
 
 def _from_joints(chain: Chain, profile: Profile, command: JointCommands) -> DesiredMotion:
@@ -68,18 +68,12 @@ def _from_joints(chain: Chain, profile: Profile, command: JointCommands) -> Desi
         ],
         axis=1,
     )
-    sides = np.stack([angle[:-1], angle[1:]], axis=1)
-    jacobian = body_jacobian(chain, sides)
-    wanted = np.asarray((jacobian @ commanded[..., None])[..., 0])
-    # About the commanded rates the crossing of the singularity is removable: the
-    # demand that remains is zero, and so is what the damping could take from it.
-    rate, damped, residual = damped_inverse_rates(jacobian, wanted, reference=commanded)
-    lost = damped & (np.abs(residual).max(axis=-1) > np.finfo(float).eps * 16)
+    commanded += 0.0  # a negative zero would be a sign in the command table
     return DesiredMotion(
-        motion=Motion(profile.t, angle, rate[:, 0], rate[:, 1]),
+        motion=Motion(profile.t, angle, commanded[:, 0], commanded[:, 1]),
         singular_value=smallest_singular_value(body_jacobian(chain, angle)),
-        damped=_at_samples(lost),
-        residual=mean_of_sides(residual),
+        damped=np.zeros(len(profile.t), dtype=bool),
+        residual=np.zeros((len(profile.t), 3)),
     )
 
 
@@ -91,19 +85,19 @@ def _from_body_rates(
     demand = grid(field, profile.t, command, profile.initial_angle)
     command, angle = demand.command, demand.angle
     sides = np.stack([angle[:-1], angle[1:]], axis=1)
-    wanted = np.stack([command.start, command.end], axis=1)
-    rate, held, residual = field.rates(body_jacobian(chain, sides), wanted)
+    demanded = np.stack([command.start, command.end], axis=1)
+    rate, held, residual = field.rates(body_jacobian(chain, sides), demanded)
     flown = seat_rotation(chain, angle)
-    wished = flown[0] @ integrate_attitude(demand.step, command)
+    demanded_attitude = flown[0] @ integrate_attitude(demand.step, command)
     motion = Motion(demand.t, angle, rate[:, 0], rate[:, 1])
     return DesiredMotion(
         motion=motion,
         singular_value=smallest_singular_value(body_jacobian(chain, angle)),
         damped=_at_samples(held),
         residual=mean_of_sides(residual),
-        attitude_error=float(np.max(geodesic_angle(flown, wished))),
-        recorded_attitude_error=_against_record(command, wished),
-        shortfall=_shortfall(chain, motion, command, held, (flown, wished)),
+        attitude_error=float(np.max(geodesic_angle(flown, demanded_attitude))),
+        recorded_attitude_error=_against_record(command, demanded_attitude),
+        shortfall=_shortfall(chain, motion, command, held, (flown, demanded_attitude)),
         rates=command,
         remarks=(demand.remark,) if demand.remark else (),
     )
@@ -117,16 +111,16 @@ def _shortfall(
         return None
     sides = motion.rate_sides
     accelerations = np.broadcast_to(motion.acceleration[:, None, :], sides.shape)
-    made = (sides[..., None, :] @ joint_axes(chain, motion.angle_sides, "seat"))[..., 0, :]
+    spin = (sides[..., None, :] @ joint_axes(chain, motion.angle_sides, "seat"))[..., 0, :]
     euler, cross = angular_acceleration_split(
         chain, motion.angle_sides, sides, accelerations, "seat"
     )
     short = np.any(held, axis=1)[:, None, None]
     slope = ((command.end - command.start) / motion.step[:, None])[:, None, :]
     return Shortfall(
-        seat_rate=np.where(short, np.stack([command.start, command.end], axis=1) - made, 0.0),
+        seat_rate=np.where(short, np.stack([command.start, command.end], axis=1) - spin, 0.0),
         seat_angular_acceleration=np.where(short, slope - (euler + cross), 0.0),
-        seat_g=np.zeros_like(made),
+        seat_g=np.zeros_like(spin),
         attitude=rotation_vector(*attitudes),
     )
 
@@ -139,7 +133,7 @@ def _at_samples(sides: Flags) -> Flags:
     return flags
 
 
-def _against_record(command: BodyRates, wished: Floats) -> float | None:
+def _against_record(command: BodyRates, demanded_attitude: Floats) -> float | None:
     """Return the largest angle between recorded and integrated attitude [rad]."""
     if command.attitude is None:
         return None
@@ -148,5 +142,5 @@ def _against_record(command: BodyRates, wished: Floats) -> float | None:
         return None
     recorded = rotation_of_quaternion(command.attitude[known])
     relative = np.swapaxes(recorded[0], 0, 1) @ recorded
-    integrated = np.swapaxes(wished[0], 0, 1) @ wished[known]
+    integrated = np.swapaxes(demanded_attitude[0], 0, 1) @ demanded_attitude[known]
     return float(np.max(geodesic_angle(relative, integrated)))

@@ -1,8 +1,8 @@
-"""From an asked G-vector to the joints that make it: the inverse of ``kinematics.seat``.
+"""From a requested G-vector to the joints that make it: the inverse of ``kinematics.seat``.
 
 The arm's rate makes the magnitude and the two gimbals the direction. With F the specific
 force along the axes that turn with the arm, C1, C2, C3 the constant rotations around fork
-and cab of (9), and e the asked direction along seat axes, the gimbals solve ::
+and cab of (9), and e the requested direction along seat axes, the gimbals solve ::
 
     Rot_z(-s3 theta3) C2' Rot_z(-s2 theta2) C1' F / |F|  =  C3 e                    (G1)
 
@@ -46,7 +46,7 @@ PILOT = np.array([1.0, 1.0, -1.0])
 
 @dataclass(frozen=True)
 class SteadyJoints:
-    """What makes an asked G if every sample is held for long.
+    """What makes a requested G if every sample is held for long.
 
     Parameters
     ----------
@@ -60,23 +60,23 @@ class SteadyJoints:
     gimbal: Floats
 
 
-def asked_directions(asked: Floats) -> Floats:
-    """Return unit vectors along seat axes of asked G-vectors, (n, 3).
+def requested_directions(requested: Floats) -> Floats:
+    """Return unit vectors along seat axes of requested G-vectors, (n, 3).
 
     Where a G-vector is zero it has the direction of the one before it, at the start of
     the next; where all are zero, that of an upright seat at rest.
 
     Parameters
     ----------
-    asked : (n, 3) array
+    requested : (n, 3) array
         In the pilot's signs [g].
     """
-    size = np.linalg.norm(asked, axis=1)
+    size = np.linalg.norm(requested, axis=1)
     known = np.flatnonzero(size > NO_G)
     if not len(known):
-        return np.tile([0.0, 0.0, -1.0], (len(asked), 1))
-    last = known[np.maximum(np.searchsorted(known, np.arange(len(asked)), side="right") - 1, 0)]
-    return np.asarray(asked[last] * PILOT / size[last, None])
+        return np.tile([0.0, 0.0, -1.0], (len(requested), 1))
+    last = known[np.maximum(np.searchsorted(known, np.arange(len(requested)), side="right") - 1, 0)]
+    return np.asarray(requested[last] * PILOT / size[last, None])
 
 
 def gimbal_angles(chain: Chain, force: Floats, direction: Floats) -> Floats:
@@ -140,25 +140,25 @@ def force_of_arm(
     return np.asarray(parts.sum(axis=-2) + gravity * np.array([0.0, 0.0, 1.0]))
 
 
-def steady_joints(machine: Machine, chain: Chain, asked: Floats) -> SteadyJoints:
-    """Return the joints that hold each asked G, (G1) and (G2).
+def steady_joints(machine: Machine, chain: Chain, requested: Floats) -> SteadyJoints:
+    """Return the joints that hold each requested G, (G1) and (G2).
 
     Less than gravity, or more than the arm's rate limit gives, cannot be held: there the
-    arm stands or turns at its limit, and the direction alone is as asked.
+    arm stands or turns at its limit, and the direction alone is as requested.
 
     Parameters
     ----------
     machine : Machine
     chain : Chain
         Of the machine with its seat.
-    asked : (n, 3) array
+    requested : (n, 3) array
         In the pilot's signs [g].
     """
-    direction = asked_directions(asked)
-    size = STANDARD_GRAVITY_M_S2 * np.linalg.norm(asked, axis=1)
+    direction = requested_directions(requested)
+    size = STANDARD_GRAVITY_M_S2 * np.linalg.norm(requested, axis=1)
     inward = np.sqrt(np.maximum(size**2 - machine.gravity**2, 0.0))
-    still = np.zeros(len(asked))
-    gimbal = np.zeros((len(asked), 2))
+    still = np.zeros(len(requested))
+    gimbal = np.zeros((len(requested), 2))
     for _ in range(STEADY_ROUNDS):
         position = seat_position(chain, np.column_stack([still, gimbal]))
         radius = np.hypot(position[:, 0], position[:, 1])

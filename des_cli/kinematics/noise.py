@@ -25,7 +25,7 @@ SMALL = 0.5
 noise upon a motion and not the motion itself."""
 
 
-def suggest_smoothing(profile: Profile, asked: DesiredMotion) -> str:
+def suggest_smoothing(profile: Profile, requested: DesiredMotion) -> str:
     """Return a sentence that suggests to smooth a noisy record, or nothing.
 
     A joint is driven by noise if its acceleration or jerk is often beyond a
@@ -36,10 +36,10 @@ def suggest_smoothing(profile: Profile, asked: DesiredMotion) -> str:
     Parameters
     ----------
     profile : Profile
-    asked : DesiredMotion
+    requested : DesiredMotion
         What the profile asks of the joints.
     """
-    motion = asked.motion
+    motion = requested.motion
     if profile.smooth_cutoff_hz <= CUTOFF_HZ or why_not_smooth(motion.t, CUTOFF_HZ):
         return ""
     rate = motion.rate

@@ -43,7 +43,7 @@ class RateField:
         """Take the rate limits of a machine."""
         return cls(chain, np.array([joint.rate for joint in machine.limits]))
 
-    def rates(self, jacobian: Floats, wanted: Floats) -> tuple[Floats, Flags, Floats]:
+    def rates(self, jacobian: Floats, demand: Floats) -> tuple[Floats, Flags, Floats]:
         """Solve ``J theta' = W`` within the limits, vectorised.
 
         A joint that would pass its limit is held there, and the others are
@@ -57,7 +57,7 @@ class RateField:
         residual : (..., 3) array
             ``W - J theta'`` [rad/s].
         """
-        rates, damped, residual = damped_inverse_rates(jacobian, wanted)
+        rates, damped, residual = damped_inverse_rates(jacobian, demand)
         at_limit = np.zeros(rates.shape, dtype=bool)
         for _ in range(3):  # each round holds at least one joint more
             over = ~at_limit & (np.abs(rates) > self.limit)
@@ -65,13 +65,13 @@ class RateField:
                 break
             at_limit |= over
             fixed = np.where(at_limit, np.clip(rates, -self.limit, self.limit), 0.0)
-            left = wanted - np.asarray((jacobian @ fixed[..., None])[..., 0])
+            left = demand - np.asarray((jacobian @ fixed[..., None])[..., 0])
             movable = np.where(at_limit[..., None, :], 0.0, jacobian)
             rates = fixed + np.where(at_limit, 0.0, damped_inverse_rates(movable, left)[0])
-        residual = wanted - np.asarray((jacobian @ rates[..., None])[..., 0])
+        residual = demand - np.asarray((jacobian @ rates[..., None])[..., 0])
         return rates, damped | np.any(at_limit, axis=-1), residual
 
-    def at(self, fork: float, cab: float, wanted: Triple) -> tuple[Triple, float]:
+    def at(self, fork: float, cab: float, demand: Triple) -> tuple[Triple, float]:
         """Return the rates at one state, and the size of the determinant.
 
         In plain floats: a step of the integration needs four of these, one after
@@ -82,11 +82,11 @@ class RateField:
         ----------
         fork, cab : float
             [rad]; the body Jacobian does not depend on the arm's angle.
-        wanted : tuple of three floats
+        demand : tuple of three floats
             [rad/s]
         """
         (a, b, c), (d, e, f), (g, h, i) = self._axes(fork, cab)
-        x, y, z = wanted
+        x, y, z = demand
         # Cramer's rule: the rows of the adjugate are cross products of the axes.
         u, v, w = e * i - f * h, f * g - d * i, d * h - e * g
         determinant = a * u + b * v + c * w
@@ -101,7 +101,7 @@ class RateField:
             if abs(arm) <= most[0] and abs(fork_rate) <= most[1] and abs(cab_rate) <= most[2]:
                 return (arm, fork_rate, cab_rate), size
         jacobian = np.array([[a, d, g], [b, e, h], [c, f, i]])
-        arm, fork_rate, cab_rate = self.rates(jacobian, np.array(wanted))[0].tolist()
+        arm, fork_rate, cab_rate = self.rates(jacobian, np.array(demand))[0].tolist()
         return (arm, fork_rate, cab_rate), size
 
     @cached_property

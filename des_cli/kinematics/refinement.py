@@ -135,16 +135,16 @@ def _pieces(field: RateField, demand: Demand, divided: Flags, tolerance: float) 
     error[~divided & (error * demand.step <= TURNING_TURN)] = 0.0
     ratio = error / max(tolerance, np.finfo(np.float64).tiny)
     # The error falls with the square of the step.
-    wanted = np.where(ratio > 1.0, np.exp2(np.ceil(0.5 * np.log2(np.maximum(ratio, 1.0)))), 1.0)
+    pieces = np.where(ratio > 1.0, np.exp2(np.ceil(0.5 * np.log2(np.maximum(ratio, 1.0)))), 1.0)
     # Its slope, which the seat's angular acceleration is off by, falls with the step.
     steep = np.maximum(4.0 * error / (demand.step * FELT_SLOPE), 1.0)
-    wanted[divided] = np.maximum(wanted, np.exp2(np.ceil(np.log2(steep))))[divided]
-    wanted[(turn > SHAPE_TURN) & (wanted == 1.0)] = 2.0
+    pieces[divided] = np.maximum(pieces, np.exp2(np.ceil(np.log2(steep))))[divided]
+    pieces[(turn > SHAPE_TURN) & (pieces == 1.0)] = 2.0
     # Reading calls longer steps a gap, and a command table is to be read again.
     over = demand.step / (longest_step(demand.t) * (1.0 + 1e-9))
-    wanted = np.maximum(wanted, np.exp2(np.ceil(np.log2(np.maximum(over, 1.0)))))
+    pieces = np.maximum(pieces, np.exp2(np.ceil(np.log2(np.maximum(over, 1.0)))))
     most = np.exp2(np.floor(np.log2(np.maximum(demand.step / SHORTEST_PIECE, 1.0))))
-    return np.minimum(np.minimum(wanted, MOST_PIECES), most).astype(np.intp)
+    return np.minimum(np.minimum(pieces, MOST_PIECES), most).astype(np.intp)
 
 
 def _errors(field: RateField, demand: Demand, divided: Flags) -> tuple[Floats, Floats]:
@@ -161,17 +161,20 @@ def _errors(field: RateField, demand: Demand, divided: Flags) -> tuple[Floats, F
     """
     command, chain = demand.command, field.chain
     rates = [
-        field.rates(body_jacobian(chain, angle), wanted)[0]
-        for angle, wanted in ((demand.angle[:-1], command.start), (demand.angle[1:], command.end))
+        field.rates(body_jacobian(chain, angle), seat_rate)[0]
+        for angle, seat_rate in (
+            (demand.angle[:-1], command.start),
+            (demand.angle[1:], command.end),
+        )
     ]
     motion = Motion(demand.t, demand.angle, rates[0], rates[1])
     error = np.zeros(len(divided))
     for s in _WITHIN:
         line = command.start + s * (command.end - command.start)
-        wanted = np.where(divided[:, None], command.at(s), line)
+        seat_rate = np.where(divided[:, None], command.at(s), line)
         jacobian = body_jacobian(chain, _angles_within(motion, s))
         linear = rates[0] + s * (rates[1] - rates[0])
-        missing = linear - field.rates(jacobian, wanted)[0]
+        missing = linear - field.rates(jacobian, seat_rate)[0]
         seat = np.asarray((jacobian @ missing[..., None])[..., 0])
         error = np.maximum(error, np.linalg.norm(seat, axis=1))
     # Simpson's rule, which is exact for both.

@@ -59,12 +59,12 @@ def respond_on(chain: Chain, gravity: float, motion: Motion) -> Response:
     )
 
 
-def respond_as_asked(machine: Machine, seat: Seat, asked: DesiredMotion) -> Response:
+def respond_as_requested(machine: Machine, seat: Seat, requested: DesiredMotion) -> Response:
     """Evaluate what a profile asks of the seat, beyond what its joint motion makes.
 
     Parameters
     ----------
-    machine, seat, asked
+    machine, seat, requested
 
     Returns
     -------
@@ -73,11 +73,11 @@ def respond_as_asked(machine: Machine, seat: Seat, asked: DesiredMotion) -> Resp
         the parts of the linear acceleration are those of the joint motion, which alone
         makes any.
     """
-    return with_shortfall(respond(machine, seat, asked.motion), asked.shortfall)
+    return with_shortfall(respond(machine, seat, requested.motion), requested.shortfall)
 
 
 def with_shortfall(response: Response, shortfall: Shortfall | None) -> Response:
-    """Return a response of a joint motion with what was asked for and not made."""
+    """Return a response of a joint motion with the shortfall added."""
     if shortfall is None:
         return response
     return replace(

@@ -49,7 +49,7 @@ def smooth_command(
         Joint commands: the arm's rate and the positions are smoothed, and the
         rates of fork and cab are the derivatives of the smoothed positions. Body
         rates: their values at samples, the mean of both sides where they step; a
-        recorded attitude is kept. An asked G, and rates beside it, likewise.
+        recorded attitude is kept. A requested G, and rates beside it, likewise.
     cutoff_hz : float
         [Hz]; infinite for the command as it is.
 
@@ -161,8 +161,9 @@ def _low_pass(values: Floats, rate: float, cutoff_hz: float) -> Floats:
     ----------
     values : (n, k) array
     rate : float
-        Samples a second.
+        Of the samples [1/s].
     cutoff_hz : float
+        [Hz]
     """
     from scipy.signal import butter, sosfiltfilt
 

@@ -197,15 +197,15 @@ class SeatMotion:
         """
         m = self.rate.shape[1]
         zero = np.zeros((3, m))
-        push = zero if force is None else force
+        on_force = zero if force is None else force
         along = zero if rate is None else rate
         on_twist = np.empty((6, m))
-        on_twist[:3] = cross(self.twist[3:], push)
+        on_twist[:3] = cross(self.twist[3:], on_force)
         if omega is not None:
             on_twist[:3] += omega
-        on_twist[3:] = cross(push, self.twist[:3])
-        on_products = np.concatenate([products + along, push])
-        on_rate = np.concatenate([along, push])
+        on_twist[3:] = cross(on_force, self.twist[:3])
+        on_products = np.concatenate([products + along, on_force])
+        on_rate = np.concatenate([along, on_force])
         first, second = self.arm[_2:], self.arm_beyond[: _33 + 1]
         # multipliers times the axes' derivatives: 2, 3; 22, 23, 33; and 222 ... 333
         v, v2 = _contract(first, on_twist), _contract(second, on_twist)

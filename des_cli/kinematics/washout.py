@@ -1,4 +1,4 @@
-"""Rates beside an asked G: which of them fork and cab can follow, and for how long.
+"""Rates beside a requested G: which of them fork and cab can follow, and for how long.
 
 The same two joints make the direction of G, and roll and pitch rate. The classical answer
 of motion cueing (Nahon and Reid 1990) is a washout: with w0 the seat's rate while only the
@@ -12,7 +12,7 @@ so that it is turned, beside the direction of G, by the small rotation d with ::
 
 What is faster than the washout time T is felt as it was recorded, and what is slower gives
 way to the direction of G. H is of second order: a steady rate, as the pitch rate of a long
-turn, then leaves no tilt behind. The asked G is seen along axes that are turned by d.
+turn, then leaves no tilt behind. The requested G is seen along axes that are turned by d.
 """
 
 from __future__ import annotations

@@ -179,7 +179,7 @@ class _Lines:
         return match[1]
 
     def pass_comments(self, *, blank_too: bool = True) -> list[tuple[int, str]]:
-        """Pass over comments, and blank lines if wanted; return the comments' numbers and text."""
+        """Pass over comments, and blank lines if told to; return the comments' numbers and text."""
         passed: list[tuple[int, str]] = []
         for line in self:
             if is_comment(line):

@@ -163,7 +163,7 @@ def _part(
     handling.parts = len(kept)
     part = handling.part or (1 if len(kept) == 1 else None)
     if part is None or not 1 <= part <= len(kept):
-        what = f"gaps split it into {len(kept)} motions, and one is wanted here: reduce takes all"
+        what = f"gaps split it into {len(kept)} motions, and one is expected here: reduce takes all"
         raise ProfileError([Complaint(label, what)])
     rows = kept[part - 1]
     if len(every) > 1:

@@ -34,7 +34,7 @@ class AttitudeRows(Rows):
         super().__init__(np.arange(len(reference)))
         self.frame = chain.transform
         self.turn = self.frame.gradient()
-        self.bend = self.turn.gradient()
+        self.turn_gradient = self.turn.gradient()
         self.target = self.frame(reference)[:, :3, :3]
         if shortfall is not None:
             self.target = self.target @ rotation(shortfall.attitude)
@@ -57,9 +57,9 @@ class AttitudeRows(Rows):
     def curvature(self, x: Floats, multiplier: Floats) -> Floats:
         """Return the exact curvature."""
         turned = self.turn(x[:, :3])[:, :, :3, :3].reshape(len(x), 3, 9)
-        bent = self.bend(x[:, :3])[..., :3, :3].reshape(len(x), 9, 9)
+        second = self.turn_gradient(x[:, :3])[..., :3, :3].reshape(len(x), 9, 9)
         off = self._off(x).reshape(len(x), 9, 1)
         curvature = np.zeros((len(x), x.shape[1], x.shape[1]))
         curvature[:, :3, :3] = turned @ np.swapaxes(turned, 1, 2)
-        curvature[:, :3, :3] += (bent @ off).reshape(len(x), 3, 3)
+        curvature[:, :3, :3] += (second @ off).reshape(len(x), 3, 3)
         return np.asarray(2.0 * self.per_chord * multiplier[:, :, None] * curvature)

@@ -102,11 +102,11 @@ def weighted_energy(problem: Problem, motion: Motion) -> float:
     return float(integrate_sides(motion.step, np.sum((c @ problem.r1) * c, axis=-1)))
 
 
-def joint_deviation(wanted: Motion, made: Motion) -> float:
+def joint_deviation(reference: Motion, motion: Motion) -> float:
     """Return ||theta - Theta|| / ||Theta|| over the joint angles."""
-    off = np.sum((made.angle_sides - wanted.angle_sides) ** 2, axis=-1)
-    size = float(integrate_sides(wanted.step, np.sum(wanted.angle_sides**2, axis=-1)))
-    return float(np.sqrt(float(integrate_sides(wanted.step, off)) / max(size, 1e-300)))
+    off = np.sum((motion.angle_sides - reference.angle_sides) ** 2, axis=-1)
+    size = float(integrate_sides(reference.step, np.sum(reference.angle_sides**2, axis=-1)))
+    return float(np.sqrt(float(integrate_sides(reference.step, off)) / max(size, 1e-300)))
 
 
 def _constant_factor(problem: Problem, before: float, after: float) -> float:
@@ -119,8 +119,8 @@ def _constant_factor(problem: Problem, before: float, after: float) -> float:
     ones = np.ones((len(problem.desired.t), 1))
 
     def excess(p: float) -> float:
-        made = follow(problem.desired, p * ones)
-        return float(weighted_energy(problem, made) ** 0.25 - after**0.25)
+        followed = follow(problem.desired, p * ones)
+        return float(weighted_energy(problem, followed) ** 0.25 - after**0.25)
 
     low, high = 0.0, 1.0
     at_low, at_high = float(-(after**0.25)), float(before**0.25 - after**0.25)

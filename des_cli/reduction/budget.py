@@ -34,7 +34,10 @@ BARRIERS = (FAR, 0.1)
 """First barriers of the starts from the desired motion: where there are several minima
 they lead to different ones."""
 
-EACH_START = 400  # Newton steps that a start may take on the coarsest grid
+EACH_START = 400
+"""Newton steps that a start may take on the coarsest grid, so that one that creeps leaves the
+others their share of all steps."""
+
 ROOM = 1e-6
 """Share of a budget that stays unspent, for the rounding of whoever measures it anew."""
 
@@ -86,8 +89,8 @@ def _with_budgets(problem: Problem, budgets: Sequence[Budget]) -> Transcription:
     for budget in budgets:
         most = budget.most * (1.0 - ROOM)
         if budget.metric == ATTITUDE_ERROR:
-            asked = problem.reference.angle, problem.shortfall
-            grid.rows.append(AttitudeRows(problem.chain, *asked, most))
+            requested = problem.reference.angle, problem.shortfall
+            grid.rows.append(AttitudeRows(problem.chain, *requested, most))
         elif budget.metric == ANGULAR_ACCELERATION_PEAK_RATIO:
             grid.rows.append(SeatAccelerationRows(grid, most))
         else:

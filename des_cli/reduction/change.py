@@ -36,7 +36,7 @@ from des_cli.reduction.fidelity import Deviation
 from des_cli.units import percent
 
 LARGEST_CHANGE = 0.1
-"""Share of the record's seat rate, or of an asked G, that may be changed before the
+"""Share of the record's seat rate, or of a requested G, that may be changed before the
 reduction without a word of the user: what a silent profile may lose of the seat rate in all."""
 
 SHARES: tuple[MetricKey, ...] = (SEAT_RATE_DEVIATION, SEAT_G_DEVIATION)

@@ -54,7 +54,7 @@ def coarsen(problem: Problem, every: int) -> Problem:
     return replace(
         problem,
         desired=_at(problem.desired, kept),
-        asked=None if problem.asked is None else _at(problem.asked, kept),
+        requested=None if problem.requested is None else _at(problem.requested, kept),
         shortfall=None if problem.shortfall is None else _shortfall_at(problem.shortfall, kept),
     )
 

@@ -112,7 +112,7 @@ class RateSums(Rows):
         total = np.zeros((len(x), 3))
         for weight, at in self._ahead():
             total[at, self.joints] += weight * multiplier
-        return self.rates.bend(x, total)
+        return self.rates.curvature(x, total)
 
 
 def _rate_rows(machine: Machine, rates: Rates, step: Floats) -> RateSums:

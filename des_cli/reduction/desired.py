@@ -12,7 +12,7 @@ def find_desired(profile: Profile, *, divide: bool = True) -> DesiredMotion:
     """Return the motion that a profile asks for.
 
     Joint commands and body rates say what the joints do, inside their limits or not. An
-    asked G says what the pilot feels: the motion that comes nearest to it is looked for
+    requested G says what the pilot feels: the motion that comes nearest to it is looked for
     inside the limits, whatever the profile's policy on them.
 
     Parameters

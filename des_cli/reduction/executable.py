@@ -91,8 +91,8 @@ def knot_grid(t: Floats, multiple: int = 1) -> SplineGrid:
     """
     duration = float(t[-1] - t[0])
     rows = len(t) - 1
-    wanted = max(int(np.ceil(duration / KNOT_STEP - 1e-9)), FEWEST_KNOTS)
-    count = max(min(wanted, rows), FEWEST_INTERVALS)
+    needed = max(int(np.ceil(duration / KNOT_STEP - 1e-9)), FEWEST_KNOTS)
+    count = max(min(needed, rows), FEWEST_INTERVALS)
     count = multiple * max(1, -(-count // multiple))
     return SplineGrid(float(t[0]), duration / count, count)
 

@@ -26,7 +26,7 @@ class IntervalDeviation(Measure):
     ----------
     grid : Transcription
     budget : float
-        For the root mean square, or relative to ||v_reference||.
+        For the root mean square, in the vector's unit, or relative to ||v_reference|| [1].
     relative : bool
     """
 
@@ -212,7 +212,7 @@ class SeatAccelerationRows(Rows):
     ----------
     grid : Transcription
     most : float
-        Largest ratio of the peaks.
+        Largest ratio of the peaks [1].
     """
 
     def __init__(self, grid: Transcription, most: float) -> None:

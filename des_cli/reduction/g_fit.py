@@ -5,8 +5,8 @@ Over the control points, with f the specific force at the seat (``kinematics.twi
     minimise 1/2 int |r(f(theta, theta', theta''))|^2 + sum_j (mu theta_j''' / a_j)^2 dt
 
 inside the limits of every joint, by the method of Levenberg and Marquardt: each step is a
-convex quadratic program. Two residuals r share the work: the arm is to make the asked
-magnitude, fork and cab the asked direction of whatever force there is. All relative and
+convex quadratic program. Two residuals r share the work: the arm is to make the requested
+magnitude, fork and cab the requested direction of whatever force there is. All relative and
 tangential terms are in f, and a whole motion is found at a time: sample by sample it would
 be a recursion in the accelerations, which a seat that is away from the gimbals' centre does
 not survive (at 10 rad/s, a metre of offset makes ten times the error that it takes away).
@@ -25,8 +25,8 @@ from des_cli.kinematics.twist import SeatForms, SeatMotion
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits
 from des_cli.reduction.free.limit_rows import LimitRows
-from des_cli.reduction.free.program import SEAT_VARIABLES
 from des_cli.reduction.free.terms import squares
+from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import Windows
 from des_cli.solver.band import SymmetricBand
 from des_cli.solver.quadratic import minimise_quadratic
@@ -47,6 +47,7 @@ FEWEST_GAIN = 1e-4
 """Or a relative decrease of the cost below this, twice in a row."""
 
 MOST_STEPS = 25
+"""Steps of one fit at the most: the turns of arm and gimbals come back to it."""
 
 DAMPING = 1e-3
 """Of the first step: weight on the squared change of the rates, (g s/rad)^2."""
@@ -79,7 +80,7 @@ class Magnitude:
     Parameters
     ----------
     size : (points,) array
-        Asked |G| [g].
+        Requested |G| [g].
     """
 
     size: Floats
@@ -96,7 +97,7 @@ class Magnitude:
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """What is missing to the asked direction e of a force as long: ``f - |f| e``.
+    """What is missing to the requested direction e of a force as long: ``f - |f| e``.
 
     For small errors it is the part of f across e; the opposite of e, which has no such
     part, is the worst.

@@ -1,10 +1,10 @@
 """The machine's motion for a profile that asks for G.
 
-First a guess: the arm's rate that would hold each asked G, no faster than the arm can
+First a guess: the arm's rate that would hold each requested G, no faster than the arm can
 change it, and the directions of the force which that makes. Then, in turns until neither
 changes the G, `reduction.g_fit` finds the fork and cab that turn the force which is really
-there, tangential and relative parts included, into the asked direction, and the arm that
-comes nearest to the asked magnitude. Where the arm lags, only the magnitude is off.
+there, tangential and relative parts included, into the requested direction, and the arm that
+comes nearest to the requested magnitude. Where the arm lags, only the magnitude is off.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from des_cli.kinematics.chain import Chain, chain_of
 from des_cli.kinematics.g_motion import (
     NO_G,
     PILOT,
-    asked_directions,
     force_of_arm,
     gimbal_angles,
+    requested_directions,
     steady_joints,
 )
 from des_cli.kinematics.onset import largest_onset
@@ -41,7 +41,7 @@ from des_cli.reduction.executable import (
     fit_executable,
     sample_spline,
 )
-from des_cli.reduction.free.program import SEAT_VARIABLES
+from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import Windows
 from des_cli.reduction.g_fit import G_TOLERANCE, Direction, Magnitude, fit_g
 from des_cli.solver.spline import FEWEST_INTERVALS, Ends, SplineGrid
@@ -79,7 +79,7 @@ class _Task:
 
 
 def follow_g(profile: Profile, command: GCommand) -> DesiredMotion:
-    """Return the motion inside the machine's limits whose G is nearest to the asked one.
+    """Return the motion inside the machine's limits whose G is nearest to the requested one.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def follow_g(profile: Profile, command: GCommand) -> DesiredMotion:
     Returns
     -------
     DesiredMotion
-        With ``shortfall`` and ``g_offset``, what of the asked G is not made.
+        With ``shortfall`` and ``g_offset``, what of the requested G is not made.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def require_makeable(profile: Profile) -> None:
     Raises
     ------
     NotReleasedError
-        If more of the asked G would be changed than the profile allows.
+        If more of the requested G would be changed than the profile allows.
     """
     if not isinstance(profile.command, GCommand):
         return
@@ -134,7 +134,7 @@ def require_makeable(profile: Profile) -> None:
         return
     nothing = most <= NO_G
     allowed = allowed_change(profile.reduction, SEAT_G_DEVIATION)
-    # The nearest that can be made is gravity itself, in the asked direction.
+    # The nearest that can be made is gravity itself, in the requested direction.
     if not nothing and _rms(profile.t, gravity - size) <= allowed * _rms(profile.t, size):
         return
     asks = "asks for no G at all" if nothing else f"asks for {most:.3g} g at most"
@@ -156,7 +156,7 @@ def _shortfall(command: GCommand, response: Response) -> Shortfall:
 
 
 def measure_offset(t: Floats, command: GCommand, response: Response) -> GOffset:
-    """Return how far a response is from an asked G.
+    """Return how far a response is from a requested G.
 
     Parameters
     ----------
@@ -173,8 +173,8 @@ def measure_offset(t: Floats, command: GCommand, response: Response) -> GOffset:
     ]
     rates: list[float | None] = [None, None]
     if command.rates is not None:
-        wanted = np.stack([command.rates.start, command.rates.end], axis=1)
-        rates = [_rms(t, (response.seat_rate - wanted)[..., axis]) for axis in (0, 1)]
+        commanded = np.stack([command.rates.start, command.rates.end], axis=1)
+        rates = [_rms(t, (response.seat_rate - commanded)[..., axis]) for axis in (0, 1)]
     return GOffset(_rms(t, off), float(off[k, side]), float(t[k + side]), *onset, *rates)
 
 
@@ -182,53 +182,53 @@ def _rms(t: Floats, sides: Floats) -> float:
     return float(np.sqrt(integrate_sides(np.diff(t), sides**2) / (t[-1] - t[0])))
 
 
-def _fit(task: _Task, asked: Floats) -> ExecutableSpline:
-    """Return the spline nearest to an asked G, (n - 1, 2, 3) [g]."""
+def _fit(task: _Task, requested: Floats) -> ExecutableSpline:
+    """Return the spline nearest to a requested G, (n - 1, 2, 3) [g]."""
     duration = float(task.t[-1] - task.t[0])
     coarsest = KNOT_STEP * 2 ** (GRIDS - 1)
     count = max(FEWEST_INTERVALS, int(np.ceil(duration / coarsest - 1e-9)))
     grid = SplineGrid(float(task.t[0]), duration / count, count)
-    control = _first_guess(task, grid, asked)
+    control = _first_guess(task, grid, requested)
     for halving in range(GRIDS):
         if halving:
             grid, control = grid.refined(control)
-        control = _in_turns(task, grid, control, asked)
+        control = _in_turns(task, grid, control, requested)
     return ExecutableSpline(grid, control)
 
 
-def _in_turns(task: _Task, grid: SplineGrid, control: Floats, asked: Floats) -> Floats:
+def _in_turns(task: _Task, grid: SplineGrid, control: Floats, requested: Floats) -> Floats:
     """Return the control points at which arm and gimbals suit each other."""
-    there = _asked_at(task.t, asked, Windows(grid, SEAT_VARIABLES).times())
-    direction = Direction(asked_directions(there).T)
+    at_points = _requested_at(task.t, requested, Windows(grid, SEAT_VARIABLES).times())
+    direction = Direction(requested_directions(at_points).T)
     arm, gimbals = _holding("fork", "cab"), _holding("arm")
-    before = np.zeros((3, len(there)))
+    before = np.zeros((3, len(at_points)))
     for _ in range(TURNS):
         found = fit_g(grid, control, task.forms, direction, task.limits, gimbals)
         if np.max(np.abs(found.force - before)) < G_TOLERANCE:
             break
         before = found.force
-        magnitude = _magnitude_along(found.force, (there * PILOT).T, task.machine.gravity)
+        magnitude = _magnitude_along(found.force, (at_points * PILOT).T, task.machine.gravity)
         control = fit_g(grid, found.control, task.forms, magnitude, task.limits, arm).control
     return found.control
 
 
-def _magnitude_along(force: Floats, asked: Floats, gravity: float) -> Magnitude:
-    """Return what the arm is to make of forces (3, points) beside the asked ones [g].
+def _magnitude_along(force: Floats, requested: Floats, gravity: float) -> Magnitude:
+    """Return what the arm is to make of forces (3, points) beside the requested ones [g].
 
-    Of a force whose direction is given, the length nearest to the asked force is that of
-    the latter's projection: the asked magnitude where the direction is as asked, less where
-    the gimbals cannot reach it. Less than gravity [m/s^2] is made by no arm, and to ask for
-    it would only make the search wander.
+    Of a force whose direction is given, the length nearest to the requested force is that
+    of the latter's projection: the requested magnitude where the direction is as requested,
+    less where the gimbals cannot reach it. Less than gravity [m/s^2] is made by no arm, and
+    to ask for it would only make the search wander.
     """
     length = np.maximum(np.linalg.norm(force, axis=0), NO_G)
-    along = np.sum(force * asked, axis=0) / length
+    along = np.sum(force * requested, axis=0) / length
     return Magnitude(np.maximum(along, gravity / STANDARD_GRAVITY_M_S2))
 
 
-def _first_guess(task: _Task, grid: SplineGrid, asked: Floats) -> Floats:
+def _first_guess(task: _Task, grid: SplineGrid, requested: Floats) -> Floats:
     """Return control points inside the limits, arm first, then the direction of its force."""
     t = grid.knots
-    at_knots = _asked_at(task.t, asked, t)
+    at_knots = _requested_at(task.t, requested, t)
     steady = steady_joints(task.machine, task.chain, at_knots)
     rate = _slewed(steady.arm_rate, grid.step, task.limits[0].acceleration)
     arm = fit_executable(
@@ -237,14 +237,14 @@ def _first_guess(task: _Task, grid: SplineGrid, asked: Floats) -> Floats:
     rate, acceleration = (grid.values(arm, t, order)[:, 0] for order in (1, 2))
     gravity = task.machine.gravity
     force = force_of_arm(task.chain, gravity, steady.gimbal, rate, acceleration)
-    gimbal = gimbal_angles(task.chain, force, asked_directions(at_knots))
+    gimbal = gimbal_angles(task.chain, force, requested_directions(at_knots))
     return fit_executable(grid, _through(task, t, rate, gimbal), task.limits, _holding()).control
 
 
 def _slewed(rate: Floats, step: float, acceleration: float) -> Floats:
     """Return the largest rates below given ones that change no faster than a limit.
 
-    So the arm is early on the way down and late on the way up: never faster than wanted.
+    So the arm is early on the way down and late on the way up: never faster than commanded.
     """
     most = acceleration * step * np.arange(len(rate))
     slower = np.minimum.accumulate(rate - most) + most
@@ -259,7 +259,7 @@ def _through(task: _Task, t: Floats, arm_rate: Floats, gimbal: Floats) -> Motion
     return Motion(t, np.column_stack([arm, gimbal]), rate[:-1], rate[1:])
 
 
-def _asked_at(t: Floats, sides: Floats, times: Floats) -> Floats:
+def _requested_at(t: Floats, sides: Floats, times: Floats) -> Floats:
     """Return values that are linear over each interval at any times, (q, 3)."""
     k = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 2)
     u = ((times - t[k]) / (t[k + 1] - t[k]))[:, None]
@@ -267,11 +267,11 @@ def _asked_at(t: Floats, sides: Floats, times: Floats) -> Floats:
 
 
 def _with_rates(t: Floats, command: GCommand) -> Floats:
-    """Return the asked G along the axes that the rates beside it turn, (n - 1, 2, 3) [g]."""
+    """Return the requested G along the axes that the rates beside it turn, (n - 1, 2, 3) [g]."""
     if command.rates is None:
         return command.sides
-    wanted = np.stack([command.rates.start, command.rates.end], axis=1)
-    rotation = washed_rotation(np.diff(t), wanted, command.washout)
+    commanded = np.stack([command.rates.start, command.rates.end], axis=1)
+    rotation = washed_rotation(np.diff(t), commanded, command.washout)
     force = command.sides * PILOT
     sides = (seen_turned(rotation[:-1], force[:, 0]), seen_turned(rotation[1:], force[:, 1]))
     return np.asarray(np.stack(sides, axis=1) * PILOT)

@@ -43,6 +43,7 @@ class JointDeviation(Measure):
     ----------
     grid : Transcription
     budget : float
+        Largest ratio of the norms [1].
     """
 
     def __init__(self, grid: Transcription, budget: float) -> None:
@@ -89,12 +90,13 @@ class SeatRateDeviation(Measure):
     ----------
     grid : Transcription
     budget : float
+        Largest ratio of the norms [1].
     """
 
     def __init__(self, grid: Transcription, budget: float) -> None:
         self.grid = grid
         axes = grid.problem.chain.seat_axes
-        self.axes, self.turn, self.bend = axes, axes.gradient(), axes.gradient().gradient()
+        self.axes, self.turn, self.turn_gradient = axes, axes.gradient(), axes.gradient().gradient()
         reference = grid.problem.reference
         rate, angle = reference.rate_sides, reference.angle_sides
         sides = (rate[..., None, :] @ axes(angle))[..., 0, :]
@@ -108,9 +110,9 @@ class SeatRateDeviation(Measure):
         self.floor = spread * scale
 
     def _spin(self, x: Floats) -> Floats:
-        here = self.grid.points.gather(x)
-        rate = self.grid.rates.value(here)
-        return np.asarray((rate[:, None, :] @ self.axes(here[:, :3]))[:, 0])
+        state = self.grid.points.gather(x)
+        rate = self.grid.rates.value(state)
+        return np.asarray((rate[:, None, :] @ self.axes(state[:, :3]))[:, 0])
 
     def value(self, x: Floats) -> float:
         """Return the value of an iterate."""
@@ -121,20 +123,22 @@ class SeatRateDeviation(Measure):
 
     def expand(self, x: Floats) -> Expansion:
         """Expand the value with its exact Hessian."""
-        grid, here = self.grid, self.grid.points.gather(x)
-        rate, slope = grid.rates.expand(here)
-        axes, turn, bend = (form(here[:, :3]) for form in (self.axes, self.turn, self.bend))
+        grid, state = self.grid, self.grid.points.gather(x)
+        rate, slope = grid.rates.expand(state)
+        axes, turn, second = (
+            form(state[:, :3]) for form in (self.axes, self.turn, self.turn_gradient)
+        )
         jacobian = np.swapaxes(axes, 1, 2) @ slope
         jacobian[:, :, :3] += np.swapaxes((rate[:, None, None, :] @ turn)[:, :, 0], 1, 2)
         off = self._spin(x) - self.target
-        bent = np.zeros((len(here), here.shape[1], here.shape[1]))
+        curvature = np.zeros((len(state), state.shape[1], state.shape[1]))
         cross = (turn @ off[:, None, :, None])[..., 0] @ slope  # (q, angle, 3 + m)
-        bent[:, :3, :] += cross
-        bent[:, :, :3] += np.swapaxes(cross, 1, 2)
-        bent[:, :3, :3] += np.einsum("kabjc,kj,kc->kab", bend, rate, off, optimize=True)
-        through_rates = grid.rates.bend(here, (axes @ off[:, :, None])[:, :, 0])
+        curvature[:, :3, :] += cross
+        curvature[:, :, :3] += np.swapaxes(cross, 1, 2)
+        curvature[:, :3, :3] += np.einsum("kabjc,kj,kc->kab", second, rate, off, optimize=True)
+        through_rates = grid.rates.curvature(state, (axes @ off[:, :, None])[:, :, 0])
         if through_rates is not None:
-            bent += through_rates
+            curvature += through_rates
         scale = 2.0 * self.weight
         return Expansion(
             self._value(off),
@@ -142,7 +146,7 @@ class SeatRateDeviation(Measure):
             grid.points.scatter(
                 scale[:, None, None] * (np.swapaxes(jacobian, 1, 2) @ jacobian), grid.n
             ),
-            bend=grid.points.scatter(scale[:, None, None] * bent, grid.n),
+            curvature=grid.points.scatter(scale[:, None, None] * curvature, grid.n),
         )
 
 
@@ -163,7 +167,7 @@ def mean_at_points(points: Points, half: Floats, sides: Floats) -> tuple[Floats,
     -------
     mean : (q, 3) array
     spread : float
-        Integral of the squared distance of the sides from the mean.
+        Integral of the squared distance of the sides from the mean [their unit squared, s].
     """
     where = np.concatenate([points.start, points.end])
     heavy = np.concatenate([half, half])

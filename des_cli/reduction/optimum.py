@@ -25,13 +25,14 @@ from des_cli.reduction.search import COARSE, TOLERANCE, Search
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.interior import Outcome
 
-# Continuation in r2: it starts where r2 outweighs the Coriolis cost by this
-# factor and goes down by at most RATIO a level.
 OUTWEIGH, RATIO = 20.0, 0.6
+"""Continuation in r2: it starts where r2 outweighs the cost of the cross-coupling by this
+factor, where the desired motion is nearly optimal, and goes down by at most RATIO a level, so
+that each optimum is near the next."""
 
-# First barriers, relative to the problem's scale: far from every limit, and
-# nearer, for a start that is itself a solution.
 FAR, NEAR = 1.0, 1e-3
+"""First barriers, relative to the problem's scale: far from every limit, and nearer, for a
+start that is itself a solution."""
 
 
 def find_optimum(problem: Problem, search: Search) -> Solution:

@@ -51,7 +51,7 @@ class Problem:
         Its limits hold for the adapted motion; None for no limits.
     gravity : float
         [m/s^2]
-    asked : Motion, optional
+    requested : Motion, optional
         What the profile asks for, on the same samples, where ``desired`` is its
         executable replacement.
     shortfall : Shortfall, optional
@@ -69,7 +69,7 @@ class Problem:
     ends: Ends = "free"
     machine: Machine | None = None
     gravity: float = STANDARD_GRAVITY_M_S2
-    asked: Motion | None = None
+    requested: Motion | None = None
     shortfall: Shortfall | None = None
 
     def __post_init__(self) -> None:
@@ -80,7 +80,7 @@ class Problem:
     @property
     def reference(self) -> Motion:
         """The motion that budgets are measured against."""
-        return self.desired if self.asked is None else self.asked
+        return self.desired if self.requested is None else self.requested
 
     @property
     def controls(self) -> int:
@@ -98,32 +98,32 @@ def control_weight(control: Control, r2: Floats) -> Floats:
     return np.array([r2.mean()]) if control == "scalar" else r2 / 3.0
 
 
-def pose_problem(profile: Profile, desired: Motion, asked: Record | None = None) -> Problem:
+def pose_problem(profile: Profile, desired: Motion, requested: Record | None = None) -> Problem:
     """Make the problem that a profile asks for along a desired motion.
 
     Parameters
     ----------
     profile : Profile
     desired : Motion
-    asked : Record, optional
+    requested : Record, optional
         What budgets are measured against, where it is not ``desired``.
     """
-    wanted = profile.reduction
+    reduction = profile.reduction
     # A weight on the whole vector is a weight on its length, whatever the axes: seat
     # axes then keep the arm's azimuth out of the arithmetic too.
-    isotropic = np.array_equal(wanted.r1, wanted.r1[0, 0] * np.eye(3))
+    isotropic = np.array_equal(reduction.r1, reduction.r1[0, 0] * np.eye(3))
     return Problem(
         desired=desired,
         chain=chain_of(profile.machine, profile.seat),
-        axes="seat" if isotropic else wanted.axes,
-        r1=wanted.r1,
-        r2=control_weight(wanted.control, wanted.r2),
-        tracking=wanted.tracking,
-        jacobian=wanted.jacobian,
-        held=np.array([joint in wanted.hold for joint in JOINTS]),
-        ends=wanted.ends,
-        machine=profile.machine if wanted.limits == "enforce" else None,
+        axes="seat" if isotropic else reduction.axes,
+        r1=reduction.r1,
+        r2=control_weight(reduction.control, reduction.r2),
+        tracking=reduction.tracking,
+        jacobian=reduction.jacobian,
+        held=np.array([joint in reduction.hold for joint in JOINTS]),
+        ends=reduction.ends,
+        machine=profile.machine if reduction.limits == "enforce" else None,
         gravity=profile.machine.gravity,
-        asked=None if asked is None else asked.motion,
-        shortfall=None if asked is None else asked.shortfall,
+        requested=None if requested is None else requested.motion,
+        shortfall=None if requested is None else requested.shortfall,
     )

@@ -19,9 +19,11 @@ singularity. Nearer to it phi changes with the angles by more than 1 / 0.3 in ea
 second, and an optimum would be a matter of that and not of the Coriolis."""
 
 DAMPING = 0.3
-"""Damping factor on the singularity itself."""
+"""Damping factor on the singularity itself: the gain of the inverse is then at most 1 / 0.6."""
 
 COMPLEX_STEP = 1e-30
+"""Step [rad] of the derivative Im f(x + ih) / h (Squire and Trapp, SIAM Review 40, 1998): no
+difference is taken, so that it may be as small as squares of it still are numbers."""
 
 
 class Rates(Protocol):
@@ -33,8 +35,8 @@ class Rates(Protocol):
     def expand(self, x: Floats) -> tuple[Floats, Floats]:
         """Return theta' and d theta' / d x, (q, 3, 3 + m)."""
 
-    def bend(self, x: Floats, pull: Floats) -> Floats | None:
-        """Return sum_j pull_j d2 theta_j' / dx dx, (q, 3 + m, 3 + m), or None if zero."""
+    def curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
+        """Return sum_j multiplier_j d2 theta_j' / dx dx, (q, 3 + m, 3 + m), or None if zero."""
 
 
 class DesiredRates:
@@ -61,7 +63,7 @@ class DesiredRates:
         """Return theta' and its constant Jacobian."""
         return self.value(x), self._jacobian
 
-    def bend(self, x: Floats, pull: Floats) -> None:
+    def curvature(self, x: Floats, multiplier: Floats) -> None:
         """Return None: the rates are linear."""
         return None
 
@@ -82,7 +84,7 @@ class AdaptedRates:
 
     def __init__(self, chain: Chain, angle: Floats, rate: Floats, joint: Floats) -> None:
         self.chain, self.rate, self.joint = chain, rate, joint
-        self.wanted = _times(chain.ground_axes(angle).swapaxes(-1, -2), rate)
+        self.demand = _times(chain.ground_axes(angle).swapaxes(-1, -2), rate)
 
     def value(self, x: Floats) -> Floats:
         """Return theta' at the points."""
@@ -97,20 +99,20 @@ class AdaptedRates:
         )
         return np.asarray(factor * phi), jacobian
 
-    def bend(self, x: Floats, pull: Floats) -> Floats:
-        """Return the curvature of the rates along a pull."""
+    def curvature(self, x: Floats, multiplier: Floats) -> Floats:
+        """Return the second derivatives of the rates times multipliers, (q, 3 + m, 3 + m)."""
         _, slope = self._phi(x[:, :3])
         factor = x[:, 3:] @ self.joint.T
         m = self.joint.shape[1]
-        bend = np.zeros((len(x), 3 + m, 3 + m))
+        curvature = np.zeros((len(x), 3 + m, 3 + m))
         for a in range(3):
             turned = x[:, :3].astype(complex)
             turned[:, a] += 1j * COMPLEX_STEP
             second = self._phi(turned)[1].imag / COMPLEX_STEP
-            bend[:, a, :3] = np.einsum("kj,kj,kjb->kb", pull, factor, second)
-        bend[:, :3, 3:] = np.einsum("kj,kja,jm->kam", pull, slope, self.joint)
-        bend[:, 3:, :3] = bend[:, :3, 3:].swapaxes(1, 2)
-        return bend
+            curvature[:, a, :3] = np.einsum("kj,kj,kjb->kb", multiplier, factor, second)
+        curvature[:, :3, 3:] = np.einsum("kj,kja,jm->kam", multiplier, slope, self.joint)
+        curvature[:, 3:, :3] = curvature[:, :3, 3:].swapaxes(1, 2)
+        return curvature
 
     def _phi(self, angle: Floats) -> tuple[Floats, Floats]:
         """Return phi and d phi_j / d theta_a, (q, 3, 3)."""
@@ -120,13 +122,13 @@ class AdaptedRates:
         damping, slope = _damping(axes, turn)
         matrix = axes @ jacobian + damping[:, None, None] * np.eye(3)
         more = np.linalg.solve(
-            matrix, _times(axes, self.wanted - _times(jacobian, self.rate))[..., None]
+            matrix, _times(axes, self.demand - _times(jacobian, self.rate))[..., None]
         )[..., 0]
         phi = self.rate + more
-        left = self.wanted - _times(jacobian, phi)
+        missing = self.demand - _times(jacobian, phi)
         # d(J'J + l^2) more + (J'J + l^2) d more = dJ' (W - J Theta') - J' dJ Theta'
         force = (
-            np.einsum("kajc,kc->kja", turn, left)
+            np.einsum("kajc,kc->kja", turn, missing)
             - np.einsum("kjc,kaic,ki->kja", axes, turn, phi)
             - more[:, :, None] * slope[:, None, :]
         )

@@ -60,7 +60,7 @@ class Found:
 
 def find_motion(
     profile: Profile,
-    asked: DesiredMotion,
+    requested: DesiredMotion,
     target: DesiredMotion,
     report: Report | None = None,
     on_stage: OnStage = untold,
@@ -71,7 +71,7 @@ def find_motion(
     ----------
     profile : Profile
         Consistent (``consistency.require_consistent``).
-    asked : DesiredMotion
+    requested : DesiredMotion
         What the profile asks for: the record.
     target : DesiredMotion
         What the motion begins from: the very same, or what conditioning made of it.
@@ -82,9 +82,9 @@ def find_motion(
     """
     on_stage("motion inside the limits")
     reduction, overspent = profile.reduction, ""
-    record, held = asked.record, target.record
+    record, held = requested.record, target.record
     free = moves_freely(reduction)
-    if target is not asked:
+    if target is not requested:
         chain = chain_of(profile.machine, profile.seat)
         smoothing = Change.between(record, held, chain, profile.machine.gravity)
         left, overspent = smoothing.left(reduction, measured=free)
@@ -92,7 +92,7 @@ def find_motion(
     if overspent or not free:
         return _of_factors(profile, record, held, overspent, report, on_stage)
     task = FreeTask.of(profile, held.motion, held.shortfall)
-    if target is not asked:
+    if target is not requested:
         task = replace(task, record=record, most=reduction.budget_of_record)
     best = find_free_motion(task, report, on_stage)
     problem = pose_problem(profile, best.desired)

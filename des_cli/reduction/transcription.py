@@ -112,9 +112,9 @@ class Transcription:
     def defect(self, x: Floats) -> Floats:
         """Return the residual of the dynamics over each interval, (n - 1, 3) [rad]."""
         rate = self.rates.value(self.points.gather(x))
-        made = self._half[:, :, 0] * (rate[self.points.start] + rate[self.points.end])
-        made += ((x[:-1, 3:] + x[1:, 3:])[:, None, :] * self._missed).sum(axis=2)
-        return np.asarray(np.diff(x[:, :3], axis=0) - made)
+        increment = self._half[:, :, 0] * (rate[self.points.start] + rate[self.points.end])
+        increment += ((x[:-1, 3:] + x[1:, 3:])[:, None, :] * self._missed).sum(axis=2)
+        return np.asarray(np.diff(x[:, :3], axis=0) - increment)
 
     def defect_jacobian(self, x: Floats) -> tuple[Floats, Floats]:
         """Return d defect_k / d x_k and / d x_{k+1}, (n - 1, 3, 3 + m) each."""
@@ -132,11 +132,11 @@ class Transcription:
 
     def defect_curvature(self, x: Floats, multiplier: Floats) -> Floats | None:
         """Return the second derivatives of multiplier' defect, (n, 3 + m, 3 + m), or None."""
-        pull = np.zeros((len(self.points.node), 3))
-        pull[self.points.start] -= self._half[:, :, 0] * multiplier
-        pull[self.points.end] -= self._half[:, :, 0] * multiplier
-        bend = self.rates.bend(self.points.gather(x), pull)
-        return None if bend is None else self.points.scatter(bend, self.n)
+        of_rates = np.zeros((len(self.points.node), 3))
+        of_rates[self.points.start] -= self._half[:, :, 0] * multiplier
+        of_rates[self.points.end] -= self._half[:, :, 0] * multiplier
+        curvature = self.rates.curvature(self.points.gather(x), of_rates)
+        return None if curvature is None else self.points.scatter(curvature, self.n)
 
     def follow(self, control: Floats) -> Floats:
         """Integrate factors (n, m) to an iterate on the dynamics of the desired Jacobian."""
@@ -145,49 +145,49 @@ class Transcription:
     # ------------------------------------------------------------------ cost
     def coriolis(self, x: Floats) -> Floats:
         """Return the Coriolis vector at the points, (q, 3) [rad/s^2]."""
-        here, problem = self.points.gather(x), self.problem
-        return coriolis(problem.chain, here[:, :3], self.rates.value(here), problem.axes)
+        state, problem = self.points.gather(x), self.problem
+        return coriolis(problem.chain, state[:, :3], self.rates.value(state), problem.axes)
 
     def cost(self, x: Floats) -> float:
         """Return J of an iterate."""
         return float(self.points.weight @ self._density(x, self.coriolis(x)))
 
     def _density(self, x: Floats, c: Floats) -> Floats:
-        problem, here = self.problem, self.points.gather(x)
-        off = here[:, :3] - self.points.gather(problem.desired.angle)
+        problem, state = self.problem, self.points.gather(x)
+        off = state[:, :3] - self.points.gather(problem.desired.angle)
         weighed = c + self.offset
         density: Floats = 0.5 * (
             np.sum((weighed @ problem.r1) * weighed, axis=1)
-            + (1.0 - here[:, 3:]) ** 2 @ problem.r2
+            + (1.0 - state[:, 3:]) ** 2 @ problem.r2
             + off**2 @ problem.tracking
         )
         return density
 
     def coriolis_form(self, x: Floats) -> CoriolisForm:
         """Return the Coriolis vector at the points and its Jacobian."""
-        here, problem = self.points.gather(x), self.problem
-        rate, slope = self.rates.expand(here)
+        state, problem = self.points.gather(x), self.problem
+        rate, slope = self.rates.expand(state)
         value, by_angle, by_rate = coriolis_derivatives(
-            problem.chain, here[:, :3], rate, problem.axes
+            problem.chain, state[:, :3], rate, problem.axes
         )
         jacobian = by_rate @ slope
         jacobian[:, :, :3] += by_angle
         return CoriolisForm(value, jacobian)
 
-    def coriolis_curvature(self, x: Floats, pull: Floats) -> Floats:
-        """Return sum_q pull_q d2 c_q / dx dx at the points, (q, 3 + m, 3 + m)."""
-        here, problem = self.points.gather(x), self.problem
-        rate, slope = self.rates.expand(here)
+    def coriolis_curvature(self, x: Floats, multiplier: Floats) -> Floats:
+        """Return sum_q multiplier_q d2 c_q / dx dx at the points, (q, 3 + m, 3 + m)."""
+        state, problem = self.points.gather(x), self.problem
+        rate, slope = self.rates.expand(state)
         angle_angle, angle_rate, rate_rate = coriolis_curvature(
-            problem.chain, here[:, :3], rate, pull, problem.axes
+            problem.chain, state[:, :3], rate, multiplier, problem.axes
         )
         cross = angle_rate @ slope  # (q, angle, 3 + m)
         curvature: Floats = np.swapaxes(slope, 1, 2) @ rate_rate @ slope
         curvature[:, :3, :3] += angle_angle
         curvature[:, :3, :] += cross
         curvature[:, :, :3] += np.swapaxes(cross, 1, 2)
-        along_rates = (rate_rate @ rate[:, :, None])[:, :, 0]  # pull' dc/dtheta'
-        through_rates = self.rates.bend(here, along_rates)
+        along_rates = (rate_rate @ rate[:, :, None])[:, :, 0]  # multiplier' dc/dtheta'
+        through_rates = self.rates.curvature(state, along_rates)
         return curvature if through_rates is None else curvature + through_rates
 
     def expand(self, x: Floats) -> Expansion:
@@ -199,10 +199,10 @@ class Transcription:
         """
         problem, points = self.problem, self.points
         form = self.coriolis_form(x)
-        gradient, pull = self._point_gradient(x, form)
+        gradient, multiplier = self._point_gradient(x, form)
         hessian = np.swapaxes(form.jacobian, 1, 2) @ problem.r1 @ form.jacobian
-        bend = points.scatter(
-            points.weight[:, None, None] * self.coriolis_curvature(x, pull), self.n
+        curvature = points.scatter(
+            points.weight[:, None, None] * self.coriolis_curvature(x, multiplier), self.n
         )
         diagonal = np.concatenate([problem.tracking, problem.r2])
         hessian[:, np.arange(3 + self.m), np.arange(3 + self.m)] += diagonal
@@ -210,18 +210,18 @@ class Transcription:
             cost=float(points.weight @ self._density(x, form.value)),
             gradient=points.scatter(points.weight[:, None] * gradient, self.n),
             hessian=points.scatter(points.weight[:, None, None] * hessian, self.n),
-            bend=bend,
+            curvature=curvature,
         )
 
     def _point_gradient(self, x: Floats, form: CoriolisForm) -> tuple[Floats, Floats]:
         """Return the running cost's gradient at the points, and R1 times what it weighs."""
-        problem, here = self.problem, self.points.gather(x)
-        pull = (form.value + self.offset) @ problem.r1
-        gradient = (pull[:, None, :] @ form.jacobian)[:, 0]
-        gradient[:, 3:] += (here[:, 3:] - 1.0) * problem.r2
-        off = here[:, :3] - self.points.gather(problem.desired.angle)
+        problem, state = self.problem, self.points.gather(x)
+        multiplier = (form.value + self.offset) @ problem.r1
+        gradient = (multiplier[:, None, :] @ form.jacobian)[:, 0]
+        gradient[:, 3:] += (state[:, 3:] - 1.0) * problem.r2
+        off = state[:, :3] - self.points.gather(problem.desired.angle)
         gradient[:, :3] += off * problem.tracking
-        return gradient, pull
+        return gradient, multiplier
 
     def gradient(self, x: Floats) -> Floats:
         """Return dJ/dx at fixed neighbours, (n, 3 + m)."""

@@ -25,12 +25,20 @@ WITHIN = 0.5
 """Share of the tolerance that is allowed at samples: between them the Coriolis vector
 bulges by a part that falls with the square of the step."""
 
-# The penalty rho starts at this multiple of the mean running cost's weight over the
-# Coriolis it weighs, and grows where a round takes less than a quarter off.
 FIRST_PENALTY, GROWTH, ENOUGH = 1e2, 10.0, 0.25
+"""The penalty rho starts at this multiple of the mean running cost's weight over the
+cross-coupling that it weighs, and grows by GROWTH where a round leaves more than the share
+ENOUGH (Nocedal and Wright, framework 17.3)."""
+
 LARGEST_PENALTY = 1e10
+"""Beyond it the penalty would leave six of a double's sixteen digits to the rest of the cost."""
+
 MOST_ROUNDS = 40
-EACH_ROUND = 300  # Newton steps in one round, at the most
+"""Rounds at the most: with ``PATIENCE`` a limit that is not met where anything is gained."""
+
+EACH_ROUND = 300
+"""Newton steps in one round, at the most."""
+
 PATIENCE = 6
 """Rounds without progress after which zero counts as out of reach."""
 
@@ -113,13 +121,12 @@ def _largest(grid: Transcription, x: Floats, chosen: Flags) -> float:
 
 def _liveliness(grid: Transcription, x: Floats) -> float:
     """Return the squared rates of an iterate over those of the desired motion."""
-    rate = grid.points.gather(x)
-    made, wanted = grid.rates.value(rate), grid.points.rate
+    rate, desired = grid.rates.value(grid.points.gather(x)), grid.points.rate
     weight = grid.points.weight
-    size = float(weight @ np.sum(wanted**2, axis=1))
+    size = float(weight @ np.sum(desired**2, axis=1))
     if size == 0.0:
         return 1.0  # it is asked to stand still
-    return float(weight @ np.sum(made**2, axis=1)) / size
+    return float(weight @ np.sum(rate**2, axis=1)) / size
 
 
 def _solution(grid: Transcription, outcome: Outcome, search: Search) -> Solution:

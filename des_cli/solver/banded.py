@@ -1,4 +1,22 @@
-"""Linear systems whose blocks couple neighbours in time, solved in linear time."""
+"""Linear systems whose blocks couple neighbours in time, solved in linear time.
+
+Of n by n blocks, each b by b, those near the diagonal are not zero. A `Part` is a run of
+like ones: of n = 4 and b = 2, the diagonal with ``ahead=0``, and with ``ahead=1`` a part
+of one row and two columns, ``row=1``, marked o::
+
+      k    0   |   1   |   2   |   3
+    0    x   x |       |       |
+         x   x | o   o |       |          ``below`` = 1 and ``above`` = 2 places of the
+    1          | x   x |       |          diagonal are used: the band has as many rows as
+               | x   x | o   o |          that, whatever the blocks' size.
+    2          |       | x   x |
+               |       | x   x | o   o
+    3          |       |       | x   x
+               |       |       | x   x
+
+LAPACK keeps a band by columns: entry (i, j) in row ``below + above + i - j`` of column j,
+below as many rows of room for what pivoting fills in.
+"""
 
 from __future__ import annotations
 

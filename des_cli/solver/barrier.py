@@ -18,8 +18,8 @@ The method is the primal-dual barrier method of Fiacco and McCormick with Newton
 - A budget's barrier has the weight of many rows (``BUDGET_WEIGHT``). One row among ten
   thousand would let the budget collapse first, and the path would follow its boundary.
 - The boundary of a budget, or of a local bound, is curved. Where a full step would overrun
-  it, the step is bent back, along H^-1 grad g for a budget, until it meets its linear
-  prediction (second-order correction). Without that, a slack of 1e-8 halves every step.
+  it, the step is corrected to second order, along H^-1 grad g for a budget, so that it
+  meets its linear prediction. Without that, a slack of 1e-8 halves every step.
 - The Hessian is exact where that is positive definite; else its curvature part, which
   alone can be indefinite, counts by a share that is halved until it is.
 - The fraction to the boundary does not follow the barrier, and a multiplier stays within
@@ -51,16 +51,20 @@ BUDGET_WEIGHT = 0.1
 """Weight of a budget's barrier, in rows per row of the local inequalities."""
 
 FRACTION = 0.995
-"""Of the way to the nearest boundary that a step may take."""
+"""Of the way to the nearest boundary that a step may take: the usual value (Nocedal and
+Wright, section 19.2)."""
 
 SPREAD = 1e2
-"""A multiplier stays within this factor of barrier over slack."""
+"""A multiplier stays within this factor of barrier over slack, as Waechter and Biegler keep it
+(eq. 16), but closer: 1e10 there guards convergence, and a hundred also the centring."""
 
 ARMIJO = 1e-4
-"""Share of the predicted decrease that a step must bring."""
+"""Share of the predicted decrease that a step must bring, as is usual (Nocedal and Wright,
+section 3.1)."""
 
 LEAST_SLACK = 1e-3
-"""Share of a nonlinear slack that a step must leave."""
+"""Share of a nonlinear slack that a step must leave: of what its linear prediction leaves at
+the least, 1 - ``FRACTION``, a fifth, for what the prediction misses."""
 
 OVERSHOOT = 0.1
 """A budget or a local bound that misses its linear prediction by this share of its slack is
@@ -71,15 +75,19 @@ SHORTEST_CORRECTED = 0.05
 
 CONTRACTION, SUPERLINEAR = 0.3, 1.5
 """The barrier falls to this share, or to this power of the gap, once its problem is solved
-to within ``CENTRED`` times the gap."""
+to within ``CENTRED`` times the gap: by the rule of Waechter and Biegler (eq. 7), who take
+0.2 and 1.5."""
 
 CENTRED = 3.0
+"""Error of a barrier's problem, over its gap, at which it counts as solved: less than the 10 of
+Waechter and Biegler (kappa_epsilon), for without a filter each iterate is to stay central."""
 
 HALVINGS = 25
-"""Of a step, before the search gives up."""
+"""Of a step, before the search gives up: 2^-25 of it is 3e-8, and moves nothing."""
 
 SHARE_HALVINGS = 5
-"""Of the share of the curvature, before it is left out altogether."""
+"""Of the share of the curvature, before it is left out altogether: a step with a thirtieth of
+it is as good as one without. Halves, so that shares are exact in binary."""
 
 SHIFTS = (1e-12, 1e-10, 1e-8, 1e-6)
 """Relative shifts of the diagonal, tried where even the convex part is singular to rounding."""
@@ -133,6 +141,8 @@ class Outcome:
     budget_multiplier : (j,) array
         What a unit of each budget is worth.
     gap, optimality : float
+        Complementarity, in the unit of the cost, and violation of the first-order conditions,
+        relative to the gradients at the start.
     steps : tuple of Step
     """
 
@@ -258,13 +268,13 @@ class _Search(Generic[E]):
         m = self.m
         stiffness = self.dual / self.slack
         of_rows = stiffness[:m] + stiffness[m : 2 * m]
+        expansion = self.program.expand(
+            self.x, self.budget_dual, self.dual[2 * m :], stiffness[2 * m :]
+        )
         share = self.share
         halvings = 0
         while True:
-            expansion = self.program.expand(
-                self.x, self.budget_dual, self.dual[2 * m :], stiffness[2 * m :], share
-            )
-            system = self.program.system(expansion, of_rows, 0.0)
+            system = self.program.system(expansion, share, of_rows, 0.0)
             if system is not None or share == 0.0:
                 break
             halvings += 1
@@ -272,7 +282,7 @@ class _Search(Generic[E]):
         for shift in SHIFTS:
             if system is not None:
                 break
-            system = self.program.system(expansion, of_rows, shift)
+            system = self.program.system(expansion, share, of_rows, shift)
         self.share = min(1.0, 2.0 * share) if share > 0.0 else 0.5**SHARE_HALVINGS
         return expansion, system
 
@@ -351,20 +361,24 @@ class _Search(Generic[E]):
         return cost - self.mu * barrier
 
     def _search(self, path: _Path, slope: float, longest: float) -> bool:
-        """Search along a step, bent back where it would overrun a curved boundary."""
+        """Search along a step, corrected where it would overrun a curved boundary."""
         program, m = self.program, self.m
         merit = self._merit(self.at.cost, self.slack, self.budget_slack)
         noise = 1e-13 * abs(merit) + 1e-14
         length = longest
-        bend: Floats | None = None
+        correction: Floats | None = None
         for trial in range(HALVINGS):
-            move = length * path.step if bend is None else length * path.step + length**2 * bend
-            at = program.values(self.x + move)
+            move = length * path.step
+            if correction is not None:
+                move = move + length**2 * correction
+            x = self.x + move
+            at = program.values(x)
             if trial == 0 and length > SHORTEST_CORRECTED:
-                bend = self._bend(path, length, at)
-                if bend is not None:
-                    move = length * path.step + length**2 * bend
-                    at = program.values(self.x + move)
+                correction = self._correction(path, length, at)
+                if correction is not None:
+                    move = move + length**2 * correction
+                    x = self.x + move
+                    at = program.values(x)
             budget_slack = 1.0 - at.budgets
             rows = program.linear_change(move)
             slack = np.concatenate(
@@ -378,29 +392,43 @@ class _Search(Generic[E]):
             if inside:
                 reached = self._merit(at.cost, slack, budget_slack)
                 if reached <= merit + ARMIJO * length * slope + noise:
-                    self.x = self.x + move
-                    self.at, self.slack, self.budget_slack = at, slack, budget_slack
+                    self.x, self.at = x, at
+                    self.slack, self.budget_slack = slack, budget_slack
                     self.length = length
                     return True
             length *= 0.5
             if trial == 1:
-                bend = None  # a shorter step follows the boundary by itself
+                correction = None  # a shorter step follows the boundary by itself
         return False
 
-    def _bend(self, path: _Path, length: float, at: Values) -> Floats | None:
-        """Return the second-order correction of a step that misses its linear predictions."""
+    def _correction(self, path: _Path, length: float, at: Values) -> Floats | None:
+        """Return the second-order correction of a step that misses its linear predictions.
+
+        Parameters
+        ----------
+        path : _Path
+        length : float
+            Of the step, 0 to 1.
+        at : Values
+            Where it leads.
+
+        Returns
+        -------
+        (N,) array or None
+            What the square of a length is times; None where the predictions hold.
+        """
         local_slack = self.slack[2 * self.m :]
         predicted = self.at.budgets - length * path.budget_change
-        missed = np.maximum(at.budgets - predicted, 0.0)
+        excess = np.maximum(at.budgets - predicted, 0.0)
         local = np.maximum(at.local - (self.at.local + length * path.local_change), 0.0)
-        bend: Floats | None = None
+        correction: Floats | None = None
         if np.any(local > OVERSHOOT * local_slack):
-            push = self.dual[2 * self.m :] / local_slack * local
-            bend = -path.border.solve(path.expansion.local_adjoint(push)) / length**2
-        if np.any(missed > OVERSHOOT * self.budget_slack):
-            back = path.border.correction(missed) / length**2
-            bend = back if bend is None else bend + back
-        return bend
+            force = path.expansion.local_adjoint(self.dual[2 * self.m :] / local_slack * local)
+            correction = -path.border.solve(force) / length**2
+        if np.any(excess > OVERSHOOT * self.budget_slack):
+            of_budgets = path.border.correction(excess) / length**2
+            correction = of_budgets if correction is None else correction + of_budgets
+        return correction
 
 
 class _Path:
@@ -439,10 +467,10 @@ class _Border:
             return plain
         return np.asarray(plain - self._answers @ (self._small @ (self._gradients.T @ plain)))
 
-    def correction(self, missed: Floats) -> Floats:
+    def correction(self, excess: Floats) -> Floats:
         """Return the shortest move, in the Hessian's norm, that lowers the budgets by so much."""
         inverse = np.linalg.pinv(self._between, rcond=1e-12)  # a gradient may vanish
-        return np.asarray(-self._answers @ (inverse @ missed))
+        return np.asarray(-self._answers @ (inverse @ excess))
 
 
 def _longest(values: Floats, change: Floats) -> float:

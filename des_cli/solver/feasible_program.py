@@ -80,10 +80,8 @@ class Program(Protocol[E]):
     def values(self, x: Floats) -> Values:
         """Evaluate the functions."""
 
-    def expand(
-        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
-    ) -> E:
-        """Evaluate with derivatives.
+    def expand(self, x: Floats, budget: Floats, local: Floats, stiffness: Floats) -> E:
+        """Evaluate with derivatives, once for all shares of the curvature.
 
         Parameters
         ----------
@@ -92,12 +90,21 @@ class Program(Protocol[E]):
             Multipliers, for the Hessian of the Lagrangian.
         stiffness : (k,) array
             Weights of ``grad h grad h'`` that the barrier adds.
-        share : float
-            Of the curvature part of the Hessian, 0 to 1.
         """
 
-    def system(self, expansion: E, stiffness: Floats, shift: float) -> System | None:
-        """Factorise the Hessian and ``rows' diag(stiffness) rows``; None if not convex."""
+    def system(self, expansion: E, share: float, stiffness: Floats, shift: float) -> System | None:
+        """Factorise the Hessian and ``rows' diag(stiffness) rows``; None if not convex.
+
+        Parameters
+        ----------
+        expansion : Expansion
+        share : float
+            Of the curvature part of the Hessian, 0 to 1.
+        stiffness : (m,) array
+            Of the linear rows.
+        shift : float
+            That the diagonal grows by, relative to itself.
+        """
 
     def reduce(self, gradient: Floats) -> Floats:
         """Return a gradient by the free unknowns, zero where nothing moves."""

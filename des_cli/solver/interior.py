@@ -29,33 +29,42 @@ from des_cli.solver.newton_system import Border, Dynamics, NewtonSystem, transpo
 from des_cli.solver.program import Expansion, Program
 from des_cli.solver.slacks import Side, longest_step
 
-# Fraction of the way to the boundary that a step may take, at the least
-# (Waechter and Biegler, eq. 8).
 BOUNDARY_FRACTION = 0.99
-# The barrier parameter falls to min(FACTOR * mu, mu ** POWER) once the barrier
-# problem is solved to MARGIN * mu (ibid., eq. 7).
+"""Fraction of the way to the boundary that a step may take, at the least (Waechter and
+Biegler, eq. 8): 1 - mu, where that is more, lets the last steps be full ones."""
+
 BARRIER_FACTOR, BARRIER_POWER, BARRIER_MARGIN = 0.2, 1.5, 10.0
-# Violation, relative to the cost's rounding, that counts as none.
+"""The barrier parameter falls to min(FACTOR * mu, mu ** POWER) once the barrier problem is
+solved to MARGIN * mu (ibid., eq. 7): superlinearly at the end, and not before it is centred."""
+
 FEASIBLE = 1e-3
-# The line search gives up below this step.
+"""Violation, relative to the cost's rounding, that counts as none."""
+
 SHORTEST_STEP = 1e-10
-# Where the exact Hessian is not convex on the dynamics, its curvature part is
-# taken in by this much less at a time until it is, and in the end left out: what
-# remains is a Gauss-Newton Hessian. Between the two it converged in a third of
-# the steps that a shifted diagonal needed (95 against 309 on the Cobra per joint,
-# BB3, 500 intervals, at the first price of a 5 % budget). The next step begins
-# with SHARE_RECOVERY times what worked.
+"""Length below which the line search gives up: what it would change is rounding."""
+
 SHARE_DECAY, LEAST_SHARE, SHARE_RECOVERY = 0.7, 0.05, 2.0
-# Shifts of the diagonal, relative to the problem's scale, tried after that.
+"""Where the exact Hessian is not convex on the dynamics, its curvature part is taken in by
+this much less at a time until it is, and in the end left out: what remains is a Gauss-Newton
+Hessian. Between the two it converged in a third of the steps that a shifted diagonal needed
+(95 against 309 on the Cobra per joint, BB3, 500 intervals, at the first price of a 5 %
+budget). The next step begins with SHARE_RECOVERY times what worked."""
+
 SHIFTS = (0.0, 1e-6, 1e-4, 1e-2, 1.0, 1e2)
-# A budget's barrier weighs as much as this share of all the local inequalities together:
-# with a weight of one the first steps would spend it to the last, and the rest creep
-# along its curved boundary.
+"""Shifts of the diagonal, relative to the problem's scale, tried after that, from none to a
+hundred times that scale, where a step is nearly one of steepest descent."""
+
 BUDGET_WEIGHT = 0.1
-# Multiplier that a budget starts with at the least.
+"""A budget's barrier weighs as much as this share of all the local inequalities together:
+with a weight of one the first steps would spend it to the last, and the rest creep along its
+curved boundary."""
+
 LEAST_PRICE = 1e-8
-# Errors within which a result that misses the tolerance may still be used.
+"""Multiplier that a budget starts with at the least: inside, multipliers are positive."""
+
 ACCEPTABLE = 1e-6
+"""Errors within which a result that misses the tolerance may still be used: 1e-6 rad of an
+angle mean nothing to a machine."""
 
 Report: TypeAlias = Callable[[Iteration], None]
 Ending: TypeAlias = Literal["converged", "acceptable", "iteration-limit", "diverged"]
@@ -73,6 +82,8 @@ class Outcome:
     multiplier : (n - 1, 3) array
         Of the dynamics.
     cost, optimality, infeasibility : float
+        Violation of the first-order conditions, scaled and per unit time, and of the
+        dynamics [rad] and the scaled inequalities.
     log : tuple of Iteration
     prices : (s,) array
         Multipliers of the budgets.
@@ -259,7 +270,7 @@ class _Method:
         gradient[:-1] += _apply(left, self.multiplier)
         gradient[1:] += _apply(ahead, self.multiplier)
         for index, jacobian in enumerate(local.rows):
-            self._push(gradient, index, jacobian, self._net_dual(index))
+            self._add_adjoint(gradient, index, jacobian, self._net_dual(index))
         for side, budget in zip(self.spending, local.budgets, strict=True):
             gradient += float(side.dual[0]) * budget.gradient
         gradient[self.program.pinned] = 0.0
@@ -271,7 +282,9 @@ class _Method:
         upper, lower = self.sides[2 * index : 2 * index + 2]
         return np.asarray(upper.dual - lower.dual)
 
-    def _push(self, force: Floats, index: int, jacobian: tuple[Floats, ...], dual: Floats) -> None:
+    def _add_adjoint(
+        self, force: Floats, index: int, jacobian: tuple[Floats, ...], dual: Floats
+    ) -> None:
         """Add the transposed Jacobian of one set of rows times multipliers to a force."""
         node = self.program.rows[index].node
         for ahead, block in enumerate(jacobian):
@@ -291,11 +304,11 @@ class _Method:
     # ------------------------------------------------------------------ one step
     def _advance(self, local: _Local) -> float | None:
         """Take one step; return its length, or None where none is acceptable."""
-        convex, bend, across = self._blocks(local)
+        convex, curvature, across = self._blocks(local)
         border = self._border(local)
         size = self.program.scale * float(self.program.weight.max())
         for share, shift in self._convexities():
-            hessian = convex + share * bend if bend is not None else convex.copy()
+            hessian = convex + share * curvature if curvature is not None else convex.copy()
             if shift:
                 diagonal = np.arange(self.width)
                 hessian[:, diagonal, diagonal] += (
@@ -324,7 +337,7 @@ class _Method:
             yield 0.0, shift
 
     def _blocks(self, local: _Local) -> tuple[Floats, Floats | None, list[Floats]]:
-        """Return the convex part of the blocks (k, k), what bends them, and blocks off them.
+        """Return the convex part of the blocks (k, k), their curvature, and blocks off them.
 
         Slacks and their multipliers are eliminated; the dynamics are not in it, nor
         what couples all samples.
@@ -333,7 +346,7 @@ class _Method:
         for side, budget in zip(self.spending, local.budgets, strict=True):
             whole = whole.plus(float(side.dual[0]), budget)
         hessian = whole.hessian.copy()
-        bends = [whole.bend, self.program.defect_curvature(self.x, self.multiplier)]
+        parts = [whole.curvature, self.program.defect_curvature(self.x, self.multiplier)]
         across = [] if whole.across is None else [whole.across.copy()]
         for index, (rows, jacobian) in enumerate(zip(self.program.rows, local.rows, strict=True)):
             upper, lower = self.sides[2 * index : 2 * index + 2]
@@ -345,9 +358,9 @@ class _Method:
                 hessian[rows.node + i] += one @ jacobian[i]
                 for j in range(i + 1, len(jacobian)):
                     across[j - i - 1][rows.node + i] += one @ jacobian[j]
-            bends.append(rows.curvature(self.x, self._net_dual(index)))
-        bending = [bend for bend in bends if bend is not None]
-        return hessian, sum(bending[1:], start=bending[0]) if bending else None, across
+            parts.append(rows.curvature(self.x, self._net_dual(index)))
+        curvatures = [part for part in parts if part is not None]
+        return hessian, sum(curvatures[1:], start=curvatures[0]) if curvatures else None, across
 
     def _border(self, local: _Local) -> Border | None:
         """Return what the budgets' eliminated slacks add to the Hessian."""
@@ -361,11 +374,16 @@ class _Method:
         force = local.expansion.gradient.copy()
         for index, jacobian in enumerate(local.rows):
             pair = range(2 * index, 2 * index + 2)
-            push = sum(self.sides[which].push(self.mu, excess[which]) for which in pair)
-            self._push(force, index, jacobian, np.asarray(push))
+            multiplier = sum(
+                self.sides[which].barrier_multiplier(self.mu, excess[which]) for which in pair
+            )
+            self._add_adjoint(force, index, jacobian, np.asarray(multiplier))
         first = 2 * len(self.program.rows)
         for which, budget in enumerate(local.budgets, start=first):
-            force += float(self.sides[which].push(self.mu, excess[which])[0]) * budget.gradient
+            force += (
+                float(self.sides[which].barrier_multiplier(self.mu, excess[which])[0])
+                * budget.gradient
+            )
         return force
 
     def _search(self, local: _Local, system: NewtonSystem) -> float | None:
@@ -379,25 +397,25 @@ class _Method:
         slope = float(np.sum(local.expansion.gradient * step.x)) + self.mu * sum(
             side.barrier_slope(move) for side, move in pairs
         )
-        here = Trial(
+        current = Trial(
             _violation(local.defect, local.excess), self._barrier_cost(local.expansion.cost)
         )
-        noise = self.filter.noise(here)
-        if here.violation <= FEASIBLE * noise / self.unit and slope > noise:
+        noise = self.filter.noise(current)
+        if current.violation <= FEASIBLE * noise / self.unit and slope > noise:
             return None  # uphill, with no violation to pay for it
         old = [side.slack for side in self.sides]
         length = step.longest
         while length >= SHORTEST_STEP:
-            defect, excess, there = self._trial(step, length, old)
-            if self.filter.accepts(here, there, length, slope):
+            defect, excess, trial = self._trial(step, length, old)
+            if self.filter.accepts(current, trial, length, slope):
                 return self._take(step, length)
-            if length == step.longest and there.violation >= here.violation > 0.0:
+            if length == step.longest and trial.violation >= current.violation > 0.0:
                 more_defect = length * local.defect + defect
                 more_excess = [length * e + f for e, f in zip(local.excess, excess, strict=True)]
                 self._reset_slacks(old)
                 corrected = self._step(local, system, more_defect, more_excess)
-                there = self._trial(corrected, corrected.longest, old)[2]
-                if self.filter.accepts(here, there, corrected.longest, slope):
+                trial = self._trial(corrected, corrected.longest, old)[2]
+                if self.filter.accepts(current, trial, corrected.longest, slope):
                     return self._take(corrected, corrected.longest)
             length *= 0.5
         self._reset_slacks(old)
@@ -433,8 +451,8 @@ class _Method:
         for side, slack, d in zip(self.sides, old, step.slacks, strict=True):
             side.slack = slack + length * d
         defect, excess = self.program.defect(x), self._excess(x)
-        there = Trial(_violation(defect, excess), self._barrier_cost(self.program.cost(x)))
-        return defect, excess, there
+        trial = Trial(_violation(defect, excess), self._barrier_cost(self.program.cost(x)))
+        return defect, excess, trial
 
     def _take(self, step: _Step, length: float) -> float:
         self.x = self.x + length * step.x

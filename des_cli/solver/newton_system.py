@@ -66,9 +66,22 @@ class NewtonSystem:
     """Symmetric blocks of a Hessian over a linearised dynamics.
 
     The unknowns of a sample stand together with the multiplier of the interval
-    that it begins: [x_k, lambda_k]. Terms that couple all samples border the band:
-    they are solved for by the formula of Sherman, Morrison and Woodbury, for one more
-    right-hand side each.
+    that it begins: [x_k, lambda_k]. With H_k the blocks (k, k) of the Hessian, C_k those
+    (k, k + 1), E_k those (k, k + 2), and L_k, A_k the derivatives of a defect by x_k and
+    x_{k+1}, the symmetric band is ::
+
+              x_0   l_0 | x_1   l_1 | x_2   l_2 | x_3
+        x_0   H_0   L_0'| C_0    .  | E_0    .  |  .
+        l_0   L_0    .  | A_0    .  |  .     .  |  .
+        x_1   C_0'  A_0'| H_1   L_1'| C_1    .  | E_1
+        l_1    .     .  | L_1    .  | A_1    .  |  .
+        x_2   E_0'   .  | C_1'  A_1'| H_2   L_2'| C_2
+        l_2    .     .  |  .     .  | L_2    .  | A_2
+        x_3    .     .  | E_1'   .  | C_2'  A_2'| H_3
+
+    and a one stands for the multiplier of the last sample, which begins no interval.
+    Terms that couple all samples border the band: they are solved for by the formula of
+    Sherman, Morrison and Woodbury, for one more right-hand side each.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class Expansion:
         Blocks (k, k) of the Gauss-Newton Hessian: positive semidefinite.
     across : (n - 1, 3 + m, 3 + m) array, optional
         Its blocks (k, k + 1), where the cost couples neighbours.
-    bend : (n, 3 + m, 3 + m) array, optional
+    curvature : (n, 3 + m, 3 + m) array, optional
         What is missing to the exact Hessian.
     """
 
@@ -34,7 +34,7 @@ class Expansion:
     gradient: Floats
     hessian: Floats
     across: Floats | None = None
-    bend: Floats | None = None
+    curvature: Floats | None = None
 
     def plus(self, price: float, other: Expansion) -> Expansion:
         """Add another expansion at a price."""
@@ -43,7 +43,7 @@ class Expansion:
             self.gradient + price * other.gradient,
             self.hessian + price * other.hessian,
             _add(self.across, price, other.across),
-            _add(self.bend, price, other.bend),
+            _add(self.curvature, price, other.curvature),
         )
 
 

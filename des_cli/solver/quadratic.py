@@ -28,17 +28,20 @@ start and a replacement for what cannot be executed: more digits mean nothing.""
 ROOM = 0.1
 """Share of its limit that a slack starts with at least."""
 
-HOPELESS = 1e12
-"""Gap, relative to the cost, at which multipliers run away because nothing is feasible."""
+HOPELESS = 1e60
+"""Relative size of a multiplier, of the inverse of a slack, or of the gap to the cost, beyond
+which nothing can be inside: all of them would grow until they overflow."""
 
 FAR, PENALTIES = 2.0, 14
 """Limited values, relative to their limits, from which on a start is calmed, and how many
 penalties, each ten times the one before, are tried."""
 
 MAX_ITERATIONS = 80
+"""Steps at the most: a predictor-corrector method takes a few dozen, whatever the size."""
 
 FRACTION = 0.995
-"""Of the way to the nearest boundary that a step takes."""
+"""Of the way to the nearest boundary that a step takes: the usual value (Nocedal and Wright,
+Numerical Optimization, section 19.2)."""
 
 SHIFTS = (0.0, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6)
 """Relative shifts of the diagonal, tried in turn where the system is singular to rounding."""
@@ -60,11 +63,6 @@ class Rows(Protocol):
 
     def add_to(self, band: SymmetricBand, stiffness: Floats) -> None:
         """Add ``rows' diag(stiffness) rows`` to a band."""
-
-
-HOPELESS = 1e60
-"""Relative size of a multiplier, or of the inverse of a slack, beyond which nothing can be
-inside: both would grow until they overflow."""
 
 
 @dataclass(frozen=True)
@@ -157,8 +155,8 @@ class _Search:
             if np.max(np.abs(self.rows.value(x)) / bounds) <= FAR:
                 break
             stiffness = weight / bounds**2
-            push = self.linear - self.rows.adjoint(stiffness * still)
-            x = self._solve(self._factorise(stiffness), push)
+            right = self.linear - self.rows.adjoint(stiffness * still)
+            x = self._solve(self._factorise(stiffness), right)
             weight *= 10.0
         return x
 
@@ -209,8 +207,8 @@ class _Local:
         search, m = self._search, self._m
         if self._factor is None:
             self._factor = search._factorise(self._stiffness[:m] + self._stiffness[m:])
-        push = target / self._slack - self._stiffness * self.missing
-        force = self._gradient + search.rows.adjoint(push[:m] - push[m:])
+        multiplier = target / self._slack - self._stiffness * self.missing
+        force = self._gradient + search.rows.adjoint(multiplier[:m] - multiplier[m:])
         move = search._solve(self._factor, -force)
         rows = search.rows.change(move)
         change = self.missing + np.concatenate([-rows, rows])

@@ -9,7 +9,8 @@ import numpy as np
 from des_cli.model.arrays import Floats
 
 FIRST_SLACK = 1e-2
-"""Slacks start at least this far inside their bounds."""
+"""Slacks start at least this far inside their bounds, in the rows' unit: kappa_1 of Waechter
+and Biegler (section 3.6), who move a start as far from a bound."""
 
 
 @dataclass
@@ -60,7 +61,7 @@ class Side:
         """Return what the eliminated slack adds to the Hessian, z / s."""
         return self.dual / self.slack
 
-    def push(self, mu: float, excess: Floats) -> Floats:
+    def barrier_multiplier(self, mu: float, excess: Floats) -> Floats:
         """Return the signed multiplier after a step that leaves the value alone."""
         return self.sign * (self.weight * mu + self.dual * excess) / self.slack
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from des_cli.kinematics.response import respond, respond_as_asked
+from des_cli.kinematics.response import respond, respond_as_requested
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
@@ -100,7 +100,7 @@ class _Comparison:
             budget=(),
         )
         problem = pose_problem(replace(profile, reduction=study), desired, asked.record)
-        before = respond_as_asked(profile.machine, profile.seat, asked)
+        before = respond_as_requested(profile.machine, profile.seat, asked)
         return cls(profile, asked, before, problem)
 
     def measure(self, motion: Motion) -> dict[str, Any]:

@@ -125,7 +125,7 @@ def keeps_budgets(claim: Claim, felt: Felt) -> bool:
 
 def spent_budgets(claim: Claim) -> list[Budget]:
     """Return the budgets on integrals that may hold the motion: those that are spent."""
-    share = SPENT_OF_TORN if claim.rough or _torn(claim.asked) else SPENT
+    share = SPENT_OF_TORN if claim.rough or _torn(claim.requested) else SPENT
     return [
         budget
         for budget in claim.reduction.budget

@@ -14,8 +14,8 @@ from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
-from des_cli.verify.asked import as_asked
 from des_cli.verify.felt import Felt, SeatChain
+from des_cli.verify.requested import as_requested
 
 ROUGH = 1e-3
 """Share of the seat rate's square that its samples have beside the mean of their neighbours,
@@ -29,7 +29,7 @@ class Claim:
     Parameters
     ----------
     profile : Profile
-    asked : Motion
+    requested : Motion
         What the profile asks for.
     desired : Motion
         The same, or the nearest motion inside the limits.
@@ -55,7 +55,7 @@ class Claim:
     """
 
     profile: Profile
-    asked: Motion
+    requested: Motion
     desired: Motion
     seat: Seat
     solution: Solution
@@ -70,10 +70,10 @@ class Claim:
     @cached_property
     def reduced(self) -> Claim:
         """The claim on what was reduced: budgets and optimality are round that motion."""
-        if self.held is None or self.held == Record(self.asked, self.shortfall):
+        if self.held is None or self.held == Record(self.requested, self.shortfall):
             return self
         return replace(
-            self, asked=self.held.motion, shortfall=self.held.shortfall, from_profile=False
+            self, requested=self.held.motion, shortfall=self.held.shortfall, from_profile=False
         )
 
     @property
@@ -99,7 +99,7 @@ class Claim:
     @cached_property
     def rough(self) -> bool:
         """Whether what was asked for is not smooth from sample to sample."""
-        count = len(self.asked.step)
+        count = len(self.requested.step)
         rate = np.concatenate([self.before.rate[:, :count], self.before.rate[:, -1:]], axis=1)
         if rate.shape[1] < 3:
             return False
@@ -109,12 +109,12 @@ class Claim:
     @cached_property
     def weight(self) -> Floats:
         """Weights of the trapezoidal rule on the states of a motion, (2 (n - 1),) [s]."""
-        return np.tile(0.5 * self.asked.step, 2)
+        return np.tile(0.5 * self.requested.step, 2)
 
     @cached_property
     def duration(self) -> float:
         """Length of the motion [s]."""
-        return float(self.asked.t[-1] - self.asked.t[0])
+        return float(self.requested.t[-1] - self.requested.t[0])
 
     @cached_property
     def chain(self) -> SeatChain:
@@ -129,14 +129,14 @@ class Claim:
     @cached_property
     def before(self) -> Felt:
         """What is asked for at all states."""
-        made = self.chain_before.along(self.asked)
+        made = self.chain_before.along(self.requested)
         command = self.profile.command if self.from_profile else None
-        return as_asked(made, command, self.shortfall)
+        return as_requested(made, command, self.shortfall)
 
     @cached_property
     def executable(self) -> Felt:
         """The desired motion at all states."""
-        if self.desired is self.asked and self.shortfall is None:
+        if self.desired is self.requested and self.shortfall is None:
             return self.before
         return self.chain_before.along(self.desired)
 

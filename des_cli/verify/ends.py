@@ -23,8 +23,8 @@ STANDSTILL = 1e-6
 
 def check_times(claim: Claim) -> Check:
     """Compare the sample times with those that were asked for."""
-    t, asked = claim.modified.t, claim.asked.t
-    apart = float(np.max(np.abs(t - asked))) if len(t) == len(asked) else float("inf")
+    t, requested = claim.modified.t, claim.requested.t
+    apart = float(np.max(np.abs(t - requested))) if len(t) == len(requested) else float("inf")
     return Check("samples.times", "difference of the sample times [s]", apart, 0.0)
 
 
@@ -34,11 +34,11 @@ def check_integral(claim: Claim) -> Check:
     Where the motion asked for is passed through, or a joint of it held, its angles are
     its own.
     """
-    motion, asked = claim.table, claim.asked
+    motion, requested = claim.table, claim.requested
     rise = 0.5 * motion.step[:, None] * (motion.rate_start + motion.rate_end)
     off = np.abs(np.diff(motion.angle, axis=0) - rise)
-    inside = (motion.t[:-1] >= asked.t[0]) & (motion.t[1:] <= asked.t[-1])
-    if _same_motion(claim.modified, asked):
+    inside = (motion.t[:-1] >= requested.t[0]) & (motion.t[1:] <= requested.t[-1])
+    if _same_motion(claim.modified, requested):
         off[inside] = 0.0
     off[np.ix_(inside, _held(claim))] = 0.0
     gap = np.max(off)
@@ -64,7 +64,7 @@ def check_ends(claim: Claim) -> list[Check]:
     alone.
     """
     ends, modified = claim.reduction.ends, claim.modified
-    begins = claim.target or claim.asked
+    begins = claim.target or claim.requested
     target = begins if claim.posed is None else claim.desired
     kept = [f"{joint}_start" not in claim.reduction.optimise for joint in JOINTS]
     start = (modified.angle - begins.angle)[0, kept]

@@ -37,11 +37,14 @@ DIFFERENCE_STEP = 1e-4
 truncation error is of the order of 1e-8."""
 
 DIRECTIONS = 12
+"""Directions for tables of up to LONG rows."""
+
 FEW, LONG = 4, 10_000
-"""Directions beyond the number of budgets that are enough for tables of LONG rows: each
-costs two evaluations of the whole motion. FEW are enough for the desired motion's slope."""
+"""Directions beyond the number of budgets that are enough for longer tables: each costs two
+evaluations of the whole motion. FEW are enough for the desired motion's slope."""
 
 SEED = 20_240_229
+"""Of the random directions: any number, always the same, so that a verdict is too."""
 
 
 def check_optimality(claim: Claim, problem: Problem) -> Check:

@@ -1,9 +1,9 @@
 """Whether a solution is what it claims to be, from the motion alone.
 
-Nothing is shared with the methods that find one: what the seat does is evaluated anew by
-``felt``, limits, ends and budgets are measured on the motion as its tables play it, costs
-are summed anew, and first-order conditions are tested by finite differences along
-directions that no method saw.
+No code is shared with the methods that find one; the package says what is. What the seat
+does is evaluated anew by ``felt``, limits, ends and budgets are measured on the motion as
+its tables play it, costs are summed anew, and first-order conditions are tested by finite
+differences along directions that no method saw.
 """
 
 from __future__ import annotations
@@ -85,14 +85,14 @@ def _of_free(claim: Claim) -> list[Check]:
 
 
 def _of_factors(claim: Claim, problem: Problem) -> list[Check]:
-    wanted = claim.reduction
+    reduction = claim.reduction
     checks = [
         *study.check_dynamics(claim, problem),
         *study.check_cost(claim, problem),
     ]
-    if wanted.method == "zero":
+    if reduction.method == "zero":
         checks.append(study.check_zero(claim, problem))
-    elif wanted.algorithm == "optimum":
+    elif reduction.algorithm == "optimum":
         checks += check_budgets(claim)
         if problem.jacobian == "desired":
             checks.append(check_optimality(claim.reduced, problem))

@@ -10,9 +10,10 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from des_cli.kinematics.attitude import rotation
-from des_cli.kinematics.chain import chain_of, seat_rotation
+from des_cli.kinematics.chain import chain_of, joint_axes, seat_rotation
 from des_cli.kinematics.desired import make_desired
-from des_cli.kinematics.response import respond, respond_as_asked
+from des_cli.kinematics.orientation import damped_inverse_rates
+from des_cli.kinematics.response import respond, respond_as_requested
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.profile import BodyRates, JointCommands, Profile
@@ -72,22 +73,34 @@ def joint_profile(t, motion):
 
 
 class TestJointCommands:
-    def test_there_and_back_through_the_singularity(self):
+    def test_commands_are_the_motion_through_the_singularity(self):
         t = np.linspace(0.0, 10.0, 1201)  # with both crossings, 10/3 and 20/3 s, on samples
         profile = joint_profile(t, cobra)
         desired = make_desired(profile)
-        command = profile.command
+        command, motion = profile.command, desired.motion
         assert desired.singular_value.min() < 1e-7
-        np.testing.assert_allclose(
-            desired.motion.rate_start[:, 1:], command.rate_start, rtol=0, atol=1e-9
-        )
-        np.testing.assert_allclose(
-            desired.motion.rate_end[:, 1:], command.rate_end, rtol=0, atol=1e-9
-        )
-        np.testing.assert_allclose(desired.motion.rate[:, 0], command.arm_rate, rtol=0, atol=1e-9)
-        np.testing.assert_array_equal(desired.motion.angle[:, 1:], command.position)
+        np.testing.assert_array_equal(motion.rate_start[:, 1:], command.rate_start)
+        np.testing.assert_array_equal(motion.rate_end[:, 1:], command.rate_end)
+        np.testing.assert_array_equal(motion.rate[:, 0], command.arm_rate)
+        np.testing.assert_array_equal(motion.angle[:, 1:], command.position)
+        assert not np.signbit(motion.rate_sides[motion.rate_sides == 0.0]).any()
         assert not desired.damped.any()
-        assert np.abs(desired.residual).max() < 1e-14
+        assert not desired.residual.any()
+
+    def test_there_and_back_through_the_singularity(self):
+        """What the motion makes of the seat's rates gives it back, about itself."""
+        t = np.linspace(0.0, 10.0, 1201)
+        profile = joint_profile(t, cobra)
+        motion = make_desired(profile).motion
+        axes = joint_axes(chain_of(DES, profile.seat), motion.angle_sides, "seat")
+        jacobian = axes.swapaxes(-1, -2)
+        demanded = (jacobian @ motion.rate_sides[..., None])[..., 0]
+        rate, damped, residual = damped_inverse_rates(
+            jacobian, demanded, reference=motion.rate_sides
+        )
+        assert damped.any()
+        np.testing.assert_array_equal(rate, motion.rate_sides)
+        assert not residual.any()
 
     def test_returned_rates_integrate_to_the_commanded_positions(self):
         t = np.linspace(0.0, 10.0, 1201)
@@ -272,20 +285,20 @@ class TestBodyRates:
         profile = body_profile(t, command, (0.1, 0.2, -0.1))
         desired = make_desired(profile)
         assert desired.shortfall is not None
-        asked = respond_as_asked(DES, Seat(), desired)
+        requested = respond_as_requested(DES, Seat(), desired)
         recorded = np.stack([command.start, command.end], axis=1)
-        np.testing.assert_allclose(asked.seat_rate, recorded, atol=1e-12)
+        np.testing.assert_allclose(requested.seat_rate, recorded, atol=1e-12)
         slope = (command.end - command.start) / 0.01
         made = respond(DES, Seat(), desired.motion)
         held = np.any(np.abs(desired.shortfall.seat_rate) > 1e-9, axis=(1, 2))
         assert 20 < held.sum() < 110
         np.testing.assert_allclose(
-            asked.seat_angular_acceleration[held],
+            requested.seat_angular_acceleration[held],
             np.broadcast_to(slope[held, None], (held.sum(), 2, 3)),
             atol=1e-10,
         )
         np.testing.assert_array_equal(
-            asked.seat_angular_acceleration[~held][:, 0],
+            requested.seat_angular_acceleration[~held][:, 0],
             made.seat_angular_acceleration[~held][:, 0],
         )
         flown = seat_rotation(chain_of(DES, Seat()), desired.motion.angle)

@@ -1,4 +1,4 @@
-"""Arm rate and gimbal angles of an asked G, against the forces that they make."""
+"""Arm rate and gimbal angles of a requested G, against the forces that they make."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from support.seat_forms import by_chain
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.g_motion import asked_directions, gimbal_angles, steady_joints
+from des_cli.kinematics.g_motion import gimbal_angles, requested_directions, steady_joints
 from des_cli.kinematics.response import respond
 from des_cli.model.machine import Machine, Seat
 from des_cli.model.machines import COVISART, DES, JOHNSVILLE
@@ -18,9 +18,9 @@ RISE = np.linspace(1.4, 9.0, N)
 SWING = np.sin(np.linspace(0.0, 2.0 * np.pi, N))
 
 
-def held(machine: Machine, seat: Seat, asked: np.ndarray) -> np.ndarray:
+def held(machine: Machine, seat: Seat, requested: np.ndarray) -> np.ndarray:
     """The G of each sample's joints, each held by a motion of its own, (n, 3) [g]."""
-    steady = steady_joints(machine, chain_of(machine, seat), asked)
+    steady = steady_joints(machine, chain_of(machine, seat), requested)
     made = []
     for arm, gimbal in zip(steady.arm_rate, steady.gimbal, strict=True):
         rate = np.array([[arm, 0.0, 0.0]])
@@ -34,7 +34,7 @@ def held(machine: Machine, seat: Seat, asked: np.ndarray) -> np.ndarray:
     ("machine", "yaw_deg"), [(DES, 270), (DES, 90), (DES, 30), (JOHNSVILLE, 0), (JOHNSVILLE, 90)]
 )
 @pytest.mark.parametrize(
-    "asked",
+    "requested",
     [
         np.column_stack([0 * RISE, 0 * RISE, RISE]),
         np.column_stack([0.4 * SWING, 0.3 * SWING, RISE]),
@@ -43,16 +43,16 @@ def held(machine: Machine, seat: Seat, asked: np.ndarray) -> np.ndarray:
     ids=["along the spine", "all components", "negative"],
 )
 def test_what_is_asked_is_made_in_steady_turning(
-    machine: Machine, yaw_deg: float, asked: np.ndarray
+    machine: Machine, yaw_deg: float, requested: np.ndarray
 ) -> None:
     seat = Seat(yaw=np.radians(yaw_deg), pitch=0.1)
-    np.testing.assert_allclose(held(machine, seat, asked), asked, atol=1e-9)
+    np.testing.assert_allclose(held(machine, seat, requested), requested, atol=1e-9)
 
 
 def test_the_des_makes_it_by_a_formula_that_shares_nothing() -> None:
-    asked = np.column_stack([0.4 * SWING, 0.3 * SWING, RISE])
+    requested = np.column_stack([0.4 * SWING, 0.3 * SWING, RISE])
     yaw = np.radians(270)
-    steady = steady_joints(DES, chain_of(DES, Seat(yaw=yaw)), asked)
+    steady = steady_joints(DES, chain_of(DES, Seat(yaw=yaw)), requested)
     zero = np.zeros(N)
     felt = by_chain(
         np.column_stack([zero, steady.gimbal]),
@@ -61,14 +61,14 @@ def test_the_des_makes_it_by_a_formula_that_shares_nothing() -> None:
         yaw,
         0.0,
     )
-    np.testing.assert_allclose(felt.g, asked, atol=1e-9)
+    np.testing.assert_allclose(felt.g, requested, atol=1e-9)
 
 
 def test_less_than_gravity_is_rest_and_too_much_is_the_arms_limit() -> None:
-    asked = np.array([[0.0, 0.0, 0.5], [0.0, 0.0, 1000.0]])
-    steady = steady_joints(DES, chain_of(DES, Seat()), asked)
+    requested = np.array([[0.0, 0.0, 0.5], [0.0, 0.0, 1000.0]])
+    steady = steady_joints(DES, chain_of(DES, Seat()), requested)
     np.testing.assert_array_equal(steady.arm_rate, [0.0, DES.limits[0].rate])
-    np.testing.assert_allclose(held(DES, Seat(), asked)[0], [0.0, 0.0, 1.0], atol=1e-12)
+    np.testing.assert_allclose(held(DES, Seat(), requested)[0], [0.0, 0.0, 1.0], atol=1e-12)
 
 
 def test_a_machine_without_an_arm_turns_none() -> None:
@@ -94,8 +94,8 @@ def test_angles_are_continuous_through_whole_turns() -> None:
 
 
 def test_no_g_has_the_direction_before_it() -> None:
-    asked = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 0], [0, 0, 2.0]])
+    requested = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 0], [0, 0, 2.0]])
     np.testing.assert_array_equal(
-        asked_directions(asked), [[1, 0, 0], [1, 0, 0], [1, 0, 0], [0, 0, -1]]
+        requested_directions(requested), [[1, 0, 0], [1, 0, 0], [1, 0, 0], [0, 0, -1]]
     )
-    np.testing.assert_array_equal(asked_directions(np.zeros((1, 3))), [[0, 0, -1]])
+    np.testing.assert_array_equal(requested_directions(np.zeros((1, 3))), [[0, 0, -1]])

@@ -76,7 +76,7 @@ def test_reductions_are_relative_to_what_the_profile_asks_for(cobra, pose):
     # The executable motion is slower than the record here: what it loses is reduction too.
     record = cobra(200)
     desired = constant(pose(record), 0.9)
-    alone, beside = pose(desired), pose(desired, asked=record)
+    alone, beside = pose(desired), pose(desired, requested=record)
     modified = constant(alone, 0.8)
     energies = [weighted_energy(alone, motion) for motion in (record, desired, modified)]
     assert energies[0] > 1.1 * energies[1]

@@ -185,7 +185,7 @@ def test_ratios_of_the_total_angular_acceleration_are_kept_and_spent(wave, pose,
 
 
 def test_a_budget_is_measured_against_what_the_profile_asks_for(posed_cobra, cobra):
-    problem = replace(posed_cobra(200, control="scalar"), asked=cobra(200))
+    problem = replace(posed_cobra(200, control="scalar"), requested=cobra(200))
     _, solution, _ = buy(problem, seat_rate_deviation_relative=0.1)
     assert solution.converged
     assert 0.0999 < spent(problem, solution, "seat_rate_deviation_relative") <= 0.1
@@ -194,7 +194,7 @@ def test_a_budget_is_measured_against_what_the_profile_asks_for(posed_cobra, cob
 def test_a_motion_that_overspends_from_the_start_is_told(posed_cobra, cobra):
     motion = cobra(100)
     far = Motion(motion.t, motion.angle, 1.3 * motion.rate_start, 1.3 * motion.rate_end)
-    problem = replace(posed_cobra(100, control="scalar"), asked=far, ends="match-both")
+    problem = replace(posed_cobra(100, control="scalar"), requested=far, ends="match-both")
     _, solution, _ = buy(problem, seat_rate_deviation_relative=1e-3)
     assert not solution.usable
     assert "overspends already" in solution.message

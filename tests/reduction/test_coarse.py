@@ -27,7 +27,7 @@ def test_grids_go_from_coarse_to_their_own_in_like_ratios(cobra, pose):
 
 def test_a_step_of_the_rate_keeps_its_sample_and_its_sides(cobra, pose):
     motion = cobra(1002)  # the cab's rate steps at sample 501, which no stride of 7 meets
-    coarse = coarsen(pose(motion, asked=motion), 7)
+    coarse = coarsen(pose(motion, requested=motion), 7)
     kept = coarse.desired
     k = int(np.flatnonzero(kept.t == motion.t[501])[0])
     assert kept.rate_end[k - 1, 2] == motion.rate_end[500, 2]

@@ -55,8 +55,8 @@ def test_jacobians_and_curvatures(grid, x):
         slope = np.sum(along(rows.value, x, move) * multiplier)
         assert np.sum(pull_back(x) * move) == pytest.approx(slope, rel=1e-8)
         curvature = rows.curvature(x, multiplier)
-        bent = 0.0 if curvature is None else (curvature @ move[:, :, None])[:, :, 0]
-        np.testing.assert_allclose(along(pull_back, x, move), bent + 0.0 * move, atol=1e-7)
+        expected = 0.0 if curvature is None else (curvature @ move[:, :, None])[:, :, 0]
+        np.testing.assert_allclose(along(pull_back, x, move), expected + 0.0 * move, atol=1e-7)
 
 
 def test_values_are_shares_of_the_limits(grid, x):

@@ -11,7 +11,7 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.twist import seat_forms
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
-from des_cli.reduction.free.program import SEAT_VARIABLES
+from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import Windows
 from des_cli.reduction.g_fit import Direction, GFit, Magnitude, Residual, _GProblem, fit_g
 from des_cli.solver.spline import Ends, SplineGrid

@@ -1,4 +1,4 @@
-"""The machine's motion for an asked G: how near it is, and that it keeps every limit."""
+"""The machine's motion for a requested G: how near it is, and that it keeps every limit."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ GRADUAL = ((0, 1.4), (5, 1.4), (81, 9), (91, 9), (106.2, 1.4), (111.2, 1.4))
 RAPID = ((0, 1.4), (5, 1.4), (5 + 7.6 / 6, 9), (20, 9), (20 + 7.6 / 6, 1.4), (30, 1.4))
 
 
-def profile_of(asked: np.ndarray, t: np.ndarray, machine: Machine = DES, **more) -> Profile:  # type: ignore[no-untyped-def]
+def profile_of(requested: np.ndarray, t: np.ndarray, machine: Machine = DES, **more) -> Profile:  # type: ignore[no-untyped-def]
     seat = Seat(yaw=0.0) if machine in (JOHNSVILLE, COVISART) else FORWARD
-    return Profile("g", t, GCommand(asked[:-1], asked[1:], **more), machine, seat)
+    return Profile("g", t, GCommand(requested[:-1], requested[1:], **more), machine, seat)
 
 
 def along_spine(*corners: tuple[float, float], machine: Machine = DES) -> Profile:
@@ -107,16 +107,16 @@ def test_in_a_rapid_onset_only_the_magnitude_lags() -> None:
 
 def test_all_components_are_followed() -> None:
     t = np.arange(0.0, 20.01, 0.02)
-    asked = np.column_stack([0.4 * np.sin(t), 0.3 * np.cos(t), np.linspace(1.4, 4.0, len(t))])
+    requested = np.column_stack([0.4 * np.sin(t), 0.3 * np.cos(t), np.linspace(1.4, 4.0, len(t))])
     for machine in (DES, JOHNSVILLE):
-        _, _, off = follow(profile_of(asked, t, machine))
+        _, _, off = follow(profile_of(requested, t, machine))
         assert np.abs(off).max() < 0.01
 
 
 def test_a_step_is_taken_as_fast_as_the_arm_can() -> None:
     t = np.arange(0.0, 20.01, 0.02)
-    asked = np.column_stack([0 * t, 0 * t, np.where(t < 8, 1.4, 4.0)])
-    found, _, off = follow(profile_of(asked, t))
+    requested = np.column_stack([0 * t, 0 * t, np.where(t < 8, 1.4, 4.0)])
+    found, _, off = follow(profile_of(requested, t))
     assert np.abs(off[..., :2]).max() < 0.12
     calm = (t[:-1] < 5) | (t[:-1] > 13)
     assert np.abs(off[calm]).max() < 0.02
@@ -157,13 +157,13 @@ def test_the_machine_starts_as_the_first_g_asks() -> None:
 
 def test_a_roll_rate_is_followed_at_first_and_then_gives_way() -> None:
     t = np.arange(0.0, 24.01, 0.02)
-    asked = np.column_stack([0 * t, 0 * t, np.full_like(t, 2.0)])
+    requested = np.column_stack([0 * t, 0 * t, np.full_like(t, 2.0)])
     roll = np.radians(10.0) * np.clip((t - 5.0) / 2.0, 0.0, 1.0)
     rates = np.column_stack([roll, 0 * t, 0 * t])
     middle = 0.5 * (rates[1:] + rates[:-1])
     command = BodyRates(rates[:-1], middle, rates[1:])
-    found, response, off = follow(profile_of(asked, t, rates=command, washout=3.0))
-    _, still, _ = follow(profile_of(asked, t))
+    found, response, off = follow(profile_of(requested, t, rates=command, washout=3.0))
+    _, still, _ = follow(profile_of(requested, t))
     added = (response.seat_rate - still.seat_rate)[:, 0, 0]
     early = (t[:-1] > 5.2) & (t[:-1] < 5.7)
     np.testing.assert_allclose(added[early], roll[:-1][early], rtol=0.25, atol=0.005)
@@ -178,8 +178,8 @@ def test_a_roll_rate_is_followed_at_first_and_then_gives_way() -> None:
 def test_a_direction_out_of_reach_is_made_as_near_as_gravity_lets_it() -> None:
     # with this seat Gx is along the cab's axis, where there is gravity alone
     t = np.arange(0.0, 10.01, 0.02)
-    asked = np.column_stack([np.full_like(t, 2.0), 0 * t, np.full_like(t, 3.0)])
-    _, response, _ = follow(profile_of(asked, t))
+    requested = np.column_stack([np.full_like(t, 2.0), 0 * t, np.full_like(t, 3.0)])
+    _, response, _ = follow(profile_of(requested, t))
     held = response.seat_g[len(t) // 2, 0]
     assert held[0] == pytest.approx(1.0, abs=0.02)
     assert held[1] == pytest.approx(0.0, abs=0.1)

@@ -112,35 +112,35 @@ def test_where_nothing_is_missed_the_gauss_newton_hessian_is_exact(name, grid, x
     for _ in range(4):
         move, h = rng.normal(size=x.shape), 1e-5
         ahead, behind = (measure.expand(grid.desired + s * h * move).gradient for s in (1, -1))
-        bend = (ahead - behind) / (2.0 * h)
+        second = (ahead - behind) / (2.0 * h)
         found = (expansion.hessian @ move[:, :, None])[:, :, 0]
         if expansion.across is not None:
             found[:-1] += (expansion.across @ move[1:, :, None])[:, :, 0]
             found[1:] += (np.swapaxes(expansion.across, 1, 2) @ move[:-1, :, None])[:, :, 0]
-        np.testing.assert_allclose(found, bend, rtol=1e-5, atol=1e-6 * np.abs(bend).max())
+        np.testing.assert_allclose(found, second, rtol=1e-5, atol=1e-6 * np.abs(second).max())
 
 
 def test_what_bends_a_hessian_is_exact(grid, x):
     # Where a measure tells its curvature, the sum is the exact Hessian anywhere.
     measure = measure_of(grid, "seat_rate_deviation_relative", BUDGET)
     expansion = measure.expand(x)
-    assert expansion.bend is not None
+    assert expansion.curvature is not None
     move, h = np.random.default_rng(7).normal(size=x.shape), 1e-5
     ahead, behind = (measure.expand(x + s * h * move).gradient for s in (1, -1))
-    bend = (ahead - behind) / (2.0 * h)
-    found = ((expansion.hessian + expansion.bend) @ move[:, :, None])[:, :, 0]
-    np.testing.assert_allclose(found, bend, rtol=1e-5, atol=1e-6 * np.abs(bend).max())
+    second = (ahead - behind) / (2.0 * h)
+    found = ((expansion.hessian + expansion.curvature) @ move[:, :, None])[:, :, 0]
+    np.testing.assert_allclose(found, second, rtol=1e-5, atol=1e-6 * np.abs(second).max())
 
 
 @pytest.mark.parametrize("name", [n for n in INTEGRALS if not n.startswith("mean")])
 def test_a_reference_of_its_own_whose_rates_step(name, grid, x, pose, wave):
     # What the profile asks for is not what the machine starts from.
-    asked = wave([[0.5, 0.25, 0.1], [0.25, 0.3, 0.1], [0.2, -0.2, 0.1]], intervals=15)
-    start, end = asked.rate_start.copy(), asked.rate_end.copy()
+    requested = wave([[0.5, 0.25, 0.1], [0.25, 0.3, 0.1], [0.2, -0.2, 0.1]], intervals=15)
+    start, end = requested.rate_start.copy(), requested.rate_end.copy()
     start[7:] += 0.3
     end[7:] += 0.3
-    asked = Motion(asked.t, asked.angle, start, end)
-    grid = Transcription(replace(grid.problem, asked=asked))
+    requested = Motion(requested.t, requested.angle, start, end)
+    grid = Transcription(replace(grid.problem, requested=requested))
     value = metric(name, grid, x)
     measure = measure_of(grid, name, value)
     assert measure.value(x) == pytest.approx(1.0, rel=1e-8)

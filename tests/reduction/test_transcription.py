@@ -41,7 +41,7 @@ def hessian_of(function, x, step=1e-3):
 def exact_hessian(expansion):
     """The blocks (k, k); this cost couples no neighbours."""
     assert expansion.across is None
-    return expansion.hessian + expansion.bend
+    return expansion.hessian + expansion.curvature
 
 
 @pytest.fixture(params=["scalar", "per-joint"])
@@ -152,8 +152,8 @@ def test_defect_derivatives(problem, anywhere):
     change = (left @ move[:-1, :, None] + ahead @ move[1:, :, None])[:, :, 0]
     np.testing.assert_allclose(directional(grid.defect), change, rtol=0, atol=1e-9)
     curvature = grid.defect_curvature(anywhere, multiplier)
-    bent = 0.0 if curvature is None else (curvature @ move[:, :, None])[:, :, 0]
-    np.testing.assert_allclose(directional(pull_back), bent + 0.0 * move, rtol=0, atol=1e-8)
+    expected = 0.0 if curvature is None else (curvature @ move[:, :, None])[:, :, 0]
+    np.testing.assert_allclose(directional(pull_back), expected + 0.0 * move, rtol=0, atol=1e-8)
 
 
 class TestDesiredJacobian:
@@ -209,9 +209,9 @@ def test_derivatives_across_the_singularity(uneven, pose, depth):
         move, h = rng.normal(size=x.shape), 1e-5
         slope = (grid.cost(x + h * move) - grid.cost(x - h * move)) / (2.0 * h)
         assert np.sum(expansion.gradient * move) == pytest.approx(slope, rel=1e-5, abs=1e-6)
-        bend = (grid.gradient(x + h * move) - grid.gradient(x - h * move)) / (2.0 * h)
+        second = (grid.gradient(x + h * move) - grid.gradient(x - h * move)) / (2.0 * h)
         found = (exact_hessian(expansion) @ move[:, :, None])[:, :, 0]
-        np.testing.assert_allclose(found, bend, rtol=1e-4, atol=1e-4 * np.abs(bend).max())
+        np.testing.assert_allclose(found, second, rtol=1e-4, atol=1e-4 * np.abs(second).max())
 
 
 def test_what_is_pinned(uneven, pose):

@@ -15,12 +15,12 @@ from des_cli.solver.feasible_program import Values
 
 @dataclass
 class Function:
-    """A function with derivatives; ``bent`` is the part of its Hessian that may be indefinite."""
+    """A function with derivatives; ``curvature`` of its Hessian may be indefinite."""
 
     value: object
     gradient: object
     hessian: object
-    bent: object = staticmethod(lambda x: np.zeros((len(x), len(x))))
+    curvature: object = staticmethod(lambda x: np.zeros((len(x), len(x))))
 
 
 def quadratic(matrix, linear, constant=0.0):
@@ -59,7 +59,8 @@ class Point:
     budgets: np.ndarray
     gradient: np.ndarray
     budget_gradients: np.ndarray
-    hessian: np.ndarray
+    convex: np.ndarray
+    curvature: np.ndarray
     slopes: np.ndarray  # of the local bounds, (k, n)
 
     def local_change(self, step):
@@ -106,21 +107,30 @@ class Dense:
             np.array([h.value(x) for h in self.local]),
         )
 
-    def expand(self, x, budget, local, stiffness, share):
+    def expand(self, x, budget, local, stiffness):
         self.iterates.append(x.copy())
-        hessian = self.cost.hessian(x) + share * self.cost.bent(x)
-        for g, weight in zip(self.budgets, budget, strict=True):
-            hessian = hessian + weight * (g.hessian(x) + share * g.bent(x))
-        slopes = np.array([h.gradient(x) for h in self.local]).reshape(-1, len(x))
-        for h, weight in zip(self.local, local, strict=True):
-            hessian = hessian + weight * (share * h.bent(x) + h.hessian(x))
-        hessian = hessian + slopes.T @ (stiffness[:, None] * slopes)
         values = self.values(x)
+        convex, curvature = self.cost.hessian(x), self.cost.curvature(x)
+        weights = zip([*self.budgets, *self.local], [*budget, *local], strict=True)
+        for function, weight in weights:
+            convex = convex + weight * function.hessian(x)
+            curvature = curvature + weight * function.curvature(x)
+        slopes = np.array([h.gradient(x) for h in self.local]).reshape(-1, len(x))
+        convex = convex + slopes.T @ (stiffness[:, None] * slopes)
         columns = np.array([g.gradient(x) for g in self.budgets]).reshape(-1, len(x)).T
-        return Point(values.cost, values.budgets, self.cost.gradient(x), columns, hessian, slopes)
+        return Point(
+            values.cost,
+            values.budgets,
+            self.cost.gradient(x),
+            columns,
+            convex,
+            curvature,
+            slopes,
+        )
 
-    def system(self, expansion, stiffness, shift):
-        matrix = expansion.hessian + self.rows.T @ (stiffness[:, None] * self.rows)
+    def system(self, expansion, share, stiffness, shift):
+        hessian = expansion.convex + share * expansion.curvature
+        matrix = hessian + self.rows.T @ (stiffness[:, None] * self.rows)
         matrix = matrix + shift * np.diag(np.diag(matrix))
         try:
             return System(cho_factor(matrix))

@@ -44,9 +44,9 @@ class Program:
         return np.diff(x[:, :3], axis=0) - 0.5 * self.h * (slope[:-1] + slope[1:])
 
     def defect_jacobian(self, x):
-        bend = 0.5 * self.h * self.slope(x)[1]
+        second = 0.5 * self.h * self.slope(x)[1]
         unit = np.eye(3, x.shape[1])
-        return -unit - bend[:-1], unit - bend[1:]
+        return -unit - second[:-1], unit - second[1:]
 
     def defect_curvature(self, x, multiplier):
         return None
@@ -100,10 +100,10 @@ class Valley(Program):
 
     def expand(self, x):
         expansion = super().expand(x)
-        gradient, bend = 0.0 * x, 0.0 * expansion.hessian
+        gradient, curvature = 0.0 * x, 0.0 * expansion.hessian
         gradient[:, 3] = self.weight * np.sin(x[:, 3])
-        bend[:, 3, 3] = self.weight * (np.cos(x[:, 3]) - 1.0)
-        return Expansion(self.cost(x), gradient, expansion.hessian, bend=bend)
+        curvature[:, 3, 3] = self.weight * (np.cos(x[:, 3]) - 1.0)
+        return Expansion(self.cost(x), gradient, expansion.hessian, curvature=curvature)
 
 
 class Position(Rows):

@@ -81,9 +81,9 @@ def test_a_drift_over_many_samples_is_no_negative_curvature(n):
     h = 1.0 / n
     hessian = np.zeros((n + 1, 4, 4))
     hessian[:, [0, 1, 2, 3], [0, 1, 2, 3]] = h * np.array([-1.0, 1.0, 1.0, 1.0])
-    unit, push = np.eye(3, 4), np.zeros((3, 4))
-    push[0, 3] = h
-    left = np.broadcast_to(-unit - push, (n, 3, 4)).copy()
+    unit, effect = np.eye(3, 4), np.zeros((3, 4))
+    effect[0, 3] = h
+    left = np.broadcast_to(-unit - effect, (n, 3, 4)).copy()
     ahead = np.broadcast_to(unit, (n, 3, 4)).copy()
     pinned = np.zeros((n + 1, 4), dtype=bool)
     pinned[0, :3] = True

@@ -50,10 +50,10 @@ def failed_of_factors(problem: Problem, solution: Solution, reduction: Reduction
 
 
 def spent_of_factors(
-    problem: Problem, solution: Solution, metric: str, asked: Motion | None = None
+    problem: Problem, solution: Solution, metric: str, requested: Motion | None = None
 ) -> float:
     """The value of a metric against the desired motion, or another, from the motions alone."""
     profile = profile_of(problem.desired, Reduction(), problem.machine or DES)
     desired = problem.desired
-    claim = Claim(profile, asked or desired, desired, profile.seat, solution, problem)
+    claim = Claim(profile, requested or desired, desired, profile.seat, solution, problem)
     return measure(claim, metric, claim.after)

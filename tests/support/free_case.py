@@ -30,16 +30,16 @@ SPENT = {f"budget.{G}", f"budget.{RATE}"}
 class Case:
     """A profile and what was found for it, to be changed and verified."""
 
-    def __init__(self, most=(0.05, 0.1), machine=DES, asked=COBRA, budget=None, **options):
+    def __init__(self, most=(0.05, 0.1), machine=DES, requested=COBRA, budget=None, **options):
         budget = budget or (Budget(G, most[0]), Budget(RATE, most[1]))
-        self.profile = profile_of(asked, Reduction(budget=budget, **options), machine)
-        self.asked = asked
-        found = find_free_motion(FreeTask.of(self.profile, asked))
+        self.profile = profile_of(requested, Reduction(budget=budget, **options), machine)
+        self.requested = requested
+        found = find_free_motion(FreeTask.of(self.profile, requested))
         self.desired, self.seat, self.solution = found.desired, found.seat, found.solution
         assert self.solution.converged
 
     def checks(
-        self, solution=None, *, asked=None, machine=None, seat=None, commands=None, **options
+        self, solution=None, *, requested=None, machine=None, seat=None, commands=None, **options
     ):
         profile = replace(
             self.profile,
@@ -48,7 +48,7 @@ class Case:
         )
         claim = Claim(
             profile,
-            asked or self.asked,
+            requested or self.requested,
             self.desired,
             seat or self.seat,
             solution or self.solution,

@@ -22,14 +22,14 @@ WAVE = make_wave(
 )
 
 
-def claim_of(motion, *, asked=None, machine=DES, **options):
+def claim_of(motion, *, requested=None, machine=DES, **options):
     profile = profile_of(motion, Reduction(budget=(), **options), machine)
 
     class Found:
         modified = motion
         control = np.zeros((len(motion.t), 0))
 
-    return Claim(profile, asked or motion, motion, profile.seat, Found)
+    return Claim(profile, requested or motion, motion, profile.seat, Found)
 
 
 @pytest.mark.parametrize("ends", ["free", "match-start", "match-rates", "match-both"])
@@ -84,8 +84,8 @@ def test_directions_per_joint_keep_clear_of_standstill():
 
 @pytest.mark.parametrize("metric", ["seat_g_rms_error_g", "joint_deviation_relative"])
 def test_slopes_are_those_of_the_whole_integral(metric):
-    asked = make_wave([[0.6, 0.1], [0.0, 0.3], [0.1, -0.2]], intervals=240, duration=8.0)
-    claim = claim_of(WAVE, asked=asked, ends="free", limits="warn")
+    requested = make_wave([[0.6, 0.1], [0.0, 0.3], [0.1, -0.2]], intervals=240, duration=8.0)
+    claim = claim_of(WAVE, requested=requested, ends="free", limits="warn")
     directions = find_directions(claim)
     functions = [
         lambda felt, before: np.sum(felt.cross**2, axis=0),

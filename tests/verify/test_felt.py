@@ -45,9 +45,16 @@ def test_dw_dt_and_cross_coupling_are_differences_of_the_angular_velocity():
     chain = SeatChain(JOHNSVILLE, Seat(0.3, -0.2))
     angle, rate, acceleration = random_states(20)
     felt, h = chain.at(angle, rate, acceleration), 1e-5
-    for expected, push in ((felt.turning, acceleration), (felt.cross, 0.0 * acceleration)):
+    for expected, joint_acceleration in (
+        (felt.turning, acceleration),
+        (felt.cross, 0.0 * acceleration),
+    ):
         ahead, behind = (
-            chain.at(angle + s * rate + 0.5 * s**2 * push, rate + s * push, push).rate
+            chain.at(
+                angle + s * rate + 0.5 * s**2 * joint_acceleration,
+                rate + s * joint_acceleration,
+                joint_acceleration,
+            ).rate
             for s in (h, -h)
         )
         np.testing.assert_allclose((ahead - behind) / (2.0 * h), expected, rtol=0, atol=1e-8)

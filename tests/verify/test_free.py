@@ -74,7 +74,7 @@ def test_every_check_has_a_key_and_a_sentence_of_its_own(case):
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 @pytest.mark.parametrize("name", ["angle", "rate_start", "control", "adjoint", "cost"])
 def test_numbers_that_are_none(case, name, value):
-    solution, n = case.solution, len(case.asked.t)
+    solution, n = case.solution, len(case.requested.t)
     if name == "cost":
         broken = replace(solution, cost=value)
     elif name in ("control", "adjoint"):
@@ -112,7 +112,7 @@ def test_a_weight_in_the_studys_axes_is_on_these(case):
     costs = []
     for name in ("coriolis_report", "coriolis_seat"):
         c = getattr(respond_on(chain_of(DES, case.seat), DES.gravity, case.solution.modified), name)
-        costs.append(float(integrate_sides(case.asked.step, c[..., 1] ** 2)))
+        costs.append(float(integrate_sides(case.requested.step, c[..., 1] ** 2)))
     for axes, right, wrong in (("report", *costs), ("seat", *reversed(costs))):
         assert "cost" not in case.failed(replace(case.solution, cost=right), r1=r1, axes=axes)
         assert "cost" in case.failed(replace(case.solution, cost=wrong), r1=r1, axes=axes)
@@ -155,7 +155,7 @@ def test_the_optimum_of_another_objective(case):
 
 def test_the_optimum_of_other_weights_on_a_fine_table():
     r1, fine = np.diag([2.0, 3.0, 2.0]), make_cobra(1000)
-    case, other = Case(asked=fine), Case(asked=fine, r1=r1)
+    case, other = Case(requested=fine), Case(requested=fine, r1=r1)
     assert other.failed() == set()
     assert "optimality" in case.failed(r1=r1)
     assert "optimality" in other.failed(r1=case.profile.reduction.r1)
@@ -170,7 +170,7 @@ def test_the_optimum_of_another_seat():
 def test_budgets_on_a_table_whose_positions_jump():
     # no sample at 5 s, where the cab turns back: within one interval it is elsewhere than
     # its rates tell, and less of the budget on G is seen at the samples than between them
-    case = Case(asked=make_cobra(1013))
+    case = Case(requested=make_cobra(1013))
     assert -0.4 < case.value(f"budget.{G}") < -0.2
     assert case.failed() == set()
     assert case.value("optimality") < 0.01
@@ -180,5 +180,5 @@ def test_a_maneuver_without_cross_coupling_passes():
     t = np.linspace(0.0, 6.0, 151)
     rate = np.stack([0.5 + 0.2 * np.sin(t), 0.0 * t, 0.0 * t], axis=1)
     for objective in ("coriolis", "blend"):
-        case = Case(asked=with_rates(t, np.zeros(3), rate), objective=objective)
+        case = Case(requested=with_rates(t, np.zeros(3), rate), objective=objective)
         assert case.failed() == set()

@@ -36,7 +36,7 @@ from tests.support.free_case import RATE, G, with_rates
 def test_a_budget_that_is_overspent_by_little(case, metric):
     chain = chain_of(DES, case.seat)
     measured = Deviation.between(
-        case.asked, case.solution.modified, (chain, chain), DES.gravity
+        case.requested, case.solution.modified, (chain, chain), DES.gravity
     ).value(metric)
     for share, broken in ((1.0 + 1e-7, False), (1.0 - 1e-7, True)):
         budget = (Budget(metric, share * measured),)
@@ -47,7 +47,7 @@ def test_budgets_are_on_the_motion_that_was_asked_for(case):
     # the cab's rate steps in what was asked for, and not in the executable motion
     own = case.value(f"budget.{G}")
     assert own == pytest.approx(0.0, abs=1e-3)
-    assert case.value(f"budget.{G}", asked=case.desired) != pytest.approx(own, abs=1e-4)
+    assert case.value(f"budget.{G}", requested=case.desired) != pytest.approx(own, abs=1e-4)
 
 
 OCCUPANT = {

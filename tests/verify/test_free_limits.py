@@ -20,7 +20,7 @@ from tests.support.free_case import SPENT, Case, with_rates
 @pytest.mark.parametrize("joint", [0, 1, 2])
 def test_a_spike_of_jerk_at_one_sample(case, joint):
     limit = DES.limits[joint].jerk
-    spike = 0.6 * limit * case.asked.step[0] ** 2  # its second difference is 1.2 times it
+    spike = 0.6 * limit * case.requested.step[0] ** 2  # its second difference is 1.2 times it
     at = np.argmin(np.abs(case.solution.modified.jerk[:, joint])) + 1
     name = ("arm", "fork", "cab")[joint]
     failed = case.failed(case.moved((at, joint, spike)))
@@ -44,11 +44,11 @@ def test_limits_that_are_smaller(case, quantity, share):
 
 def test_a_motion_that_is_passed_through_keeps_its_angles(case):
     # its positions are more than the integrals of its rates
-    passed = replace(case.solution, modified=case.asked)
+    passed = replace(case.solution, modified=case.requested)
     assert "dynamics.angles" not in case.failed(passed)
-    angle = case.asked.angle.copy()
+    angle = case.requested.angle.copy()
     angle[-1, 2] += 1e-9
-    other = replace(case.solution, modified=replace(case.asked, angle=angle))
+    other = replace(case.solution, modified=replace(case.requested, angle=angle))
     assert "dynamics.angles" in case.failed(other)
 
 
@@ -102,7 +102,7 @@ def test_a_start_that_is_off(case):
 
 def test_a_start_that_is_free_may_be_off():
     case = Case(ends="free", optimise=("cab_start",))
-    start = case.solution.modified.angle[0] - case.asked.angle[0]
+    start = case.solution.modified.angle[0] - case.requested.angle[0]
     assert abs(start[2]) > 0.01
     assert case.failed() == set()
     assert "start.angle" in case.failed(optimise=())
@@ -111,7 +111,7 @@ def test_a_start_that_is_free_may_be_off():
 
 def test_an_end_that_is_off():
     case = Case(ends="match-both")
-    n = len(case.asked.t)
+    n = len(case.requested.t)
     late = [(n - 1 - k, 1, 2e-9 * (1.0 - k / 40)) for k in range(40)]
     assert case.failed(case.moved(*late)) - SPENT == {"ends.rate"}
     bump = [(100 + k, 1, 1e-3 * np.sin(np.pi * k / 100) ** 2) for k in range(101)]
@@ -123,7 +123,7 @@ def test_the_end_of_a_finer_table_is_held_to_more():
     # a table ends off the smooth motion by the order of the step squared, and no more
     tolerance = {}
     for intervals in (100, 400):
-        case = Case(ends="match-both", asked=make_cobra(intervals))
+        case = Case(ends="match-both", requested=make_cobra(intervals))
         (check,) = [c for c in case.checks() if c.key == "ends.angle"]
         assert check.ok
         tolerance[intervals] = check.tolerance

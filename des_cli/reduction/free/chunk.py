@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from des_cli.kinematics.seat_turn import SeatTurn, mixed_force, mixed_force_slope
 from des_cli.kinematics.twist import VARIABLES, SeatMotion
 from des_cli.model.arrays import Floats
+from des_cli.reduction.free.expansion import MotionExpansion
+from des_cli.reduction.free.hessian import (
+    IntervalSquares,
+    PointBlocks,
+    ScaledSlope,
+    SeatBlocks,
+    SeatCurvature,
+)
 from des_cli.reduction.free.local_bounds import (
     AttitudeBound,
     ComponentBound,
@@ -17,7 +24,6 @@ from des_cli.reduction.free.local_bounds import (
     NormBound,
     OnsetBound,
 )
-from des_cli.reduction.free.system import MotionExpansion
 from des_cli.reduction.free.terms import (
     JointBudget,
     Quantity,
@@ -25,64 +31,68 @@ from des_cli.reduction.free.terms import (
     curvature_of,
     slope_of,
     square,
-    squares,
     value_of,
 )
 from des_cli.reduction.free.windows import JOINTS, POINTS
 
-if TYPE_CHECKING:
-    from des_cli.reduction.free.program import MotionProgram
-
 
 class Chunk:
-    """Derivatives on a span of intervals, collected until they go to the control points."""
+    """Derivatives on a span of intervals, collected until they go to the control points.
+
+    Parameters
+    ----------
+    total : MotionExpansion
+        What they are added to.
+    seat : SeatMotion
+        At the span's m points.
+    turns : sequence of SeatTurn
+        One for each free angle of the seat, s of them.
+    first, last : int
+        The span's intervals.
+    """
 
     def __init__(
         self,
-        program: MotionProgram,
         total: MotionExpansion,
         seat: SeatMotion,
         turns: Sequence[SeatTurn],
-        share: float,
         first: int,
         last: int,
     ) -> None:
-        self.program, self.total, self.seat, self.share = program, total, seat, share
+        self.unknowns, self.total, self.seat = total.unknowns, total, seat
         self.first, self.last = first, last
         self.at = slice(POINTS * first, POINTS * last)
         self.turns = turns
         self.turned = [turn.of(seat) for turn in turns]
-        self.slopes: list[Floats] = []  # by the variables, scaled
-        self.turned_slopes: list[Floats] = []  # the same by the seat's angles, (s, 3, m)
+        self.slopes: list[ScaledSlope] = []
         self.multipliers: dict[Quantity, Floats] = {}
         m = seat.rate.shape[1]
         self.across = np.zeros((len(turns), VARIABLES, m))  # by the seat's angles and these
 
-    def take(
-        self, term: Term | JointBudget, factor: float, gradient: Floats, control: Floats
-    ) -> float:
-        """Add a term times a factor; return its value."""
-        program, seat = self.program, self.seat
-        if isinstance(term, JointBudget):  # its Hessian is constant, and added at the end
-            off = program.off(term, control, self.first, self.last)
-            into = program.control(gradient)
-            program.angles.scatter(2.0 * term.scale * off, self.first, into)
-            return term.scale * square(off)
+    def take(self, term: Term, factor: float, gradient: Floats) -> float:
+        """Add a term's gradient, and its Hessian times a factor; return its value."""
+        seat, windows = self.seat, self.unknowns.seat_windows
         residual = term.residual(seat, self.at)
         slope = term.slope(seat)
         by_variable = np.zeros((VARIABLES, residual.shape[1]))
         np.einsum("krm,rm->km", slope, 2.0 * residual, out=by_variable[: len(slope)])
-        program.windows.scatter(by_variable, self.first, program.control(gradient))
+        windows.scatter(by_variable, self.first, self.unknowns.control(gradient))
         root = np.sqrt(2.0 * factor)
-        self.slopes.append(root * slope)
-        self._push(term.quantity, (2.0 * factor * self.share) * term.multiplier(residual))
-        if self.turns:
-            by_seat = np.stack(
-                [term.weigh(_turned_value(seat, t, term.quantity)) for t in self.turned]
-            )
-            program.seat_angles(gradient)[:] += np.einsum("srm,rm->s", by_seat, 2.0 * residual)
-            self.turned_slopes.append(root * by_seat)
+        self._add_multiplier(term.quantity, (2.0 * factor) * term.multiplier(residual))
+        by_seat = np.zeros((len(self.turns), *residual.shape))
+        for s, turned in enumerate(self.turned):
+            by_seat[s] = term.weigh(_turned_value(seat, turned, term.quantity))
+        into = self.unknowns.seat_angles(gradient)
+        into += np.einsum("srm,rm->s", by_seat, 2.0 * residual)
+        self.slopes.append(ScaledSlope(root * slope, root * by_seat))
         return square(residual)
+
+    def take_joints(self, budget: JointBudget, control: Floats, gradient: Floats) -> float:
+        """Add a joint budget's gradient, whose Hessian is constant; return its value."""
+        windows = self.unknowns.angle_windows
+        off = budget.residual(windows.gather(control, self.first, self.last), self.at)
+        windows.scatter(2.0 * budget.scale * off, self.first, self.unknowns.control(gradient))
+        return budget.scale * square(off)
 
     def bind(
         self,
@@ -92,44 +102,82 @@ class Chunk:
         multiplier: Floats,
         stiffness: Floats,
     ) -> Floats:
-        """Add a local bound's share of the Hessian and keep its slopes; return its values."""
-        program, total = self.program, self.total
+        """Add a local bound's share of the Hessian and keep its slopes; return its values.
+
+        Parameters
+        ----------
+        bound : LocalBound
+        angles : (3, m) array
+            Of the joints [rad], where the bound needs them.
+        rows : slice
+            Where its rows of this span stand among all local rows.
+        multiplier, stiffness : (rows,) array
+            Of these rows.
+        """
         value = bound.value(self.seat, angles, self.at)
         slope = bound.slope(self.seat, angles, self.at)
         multiplier, stiffness = multiplier.reshape(value.shape), stiffness.reshape(value.shape)
-        windows = program.angles if isinstance(bound, AttitudeBound) else program.windows
-        by_seat = self._by_seat(bound, value.shape)
-        total.keep(rows, windows, slope, by_seat, self.first)
         if isinstance(bound, AttitudeBound):
-            hessian = np.stack(
-                [
-                    np.sum(stiffness * slope[k] * slope[n], axis=0)
-                    for k in range(JOINTS)
-                    for n in range(k, JOINTS)
-                ]
-            )
-            if self.share > 0.0:
-                hessian += self.share * bound.curvature(self.seat, angles, self.at, multiplier)
-            program.angles.scatter_hessian(hessian, self.first, total.band)
+            windows, by_seat = self.unknowns.angle_windows, self._by_seat(bound, value.shape)
+            convex = [
+                np.sum(stiffness * slope[k] * slope[n], axis=0)
+                for k in range(JOINTS)
+                for n in range(k, JOINTS)
+            ]
+            curvature = bound.curvature(self.seat, angles, self.at, multiplier)
+            self.total.parts.append(PointBlocks(windows, self.first, np.stack(convex), curvature))
+            self.total.keep(rows, windows, slope, by_seat, self.first)
             return value.reshape(-1)
+        windows, by_seat = self.unknowns.seat_windows, self._by_seat(bound, value.shape)
+        self.total.keep(rows, windows, slope, by_seat, self.first)
         if isinstance(bound, OnsetBound):
-            window = program.windows.to_window(slope)
-            program.windows.scatter_squares(np.sqrt(stiffness) * window, self.first, total.band)
-            if self.turns:
-                stiff = slope * np.tile(stiffness, (1, POINTS))
-                both = np.tile(by_seat, (1, 1, POINTS))
-                self.across += np.einsum("krm,srm->skm", stiff, both)
-                total.corner += np.einsum("srm,trm,rm->st", by_seat, by_seat, stiffness)
+            self._add_interval_squares(slope, by_seat, stiffness)
         else:
-            self.slopes.append(np.sqrt(stiffness) * slope)
-            if self.turns:
-                self.turned_slopes.append(np.sqrt(stiffness) * by_seat)
-        if self.share > 0.0:
-            if isinstance(bound, ComponentBound | OnsetBound):
-                self._push("force", self.share * bound.push(multiplier))
-            elif isinstance(bound, NormBound):
-                self._push_length(bound, self.share * multiplier[0])
+            root = np.sqrt(stiffness)
+            self.slopes.append(ScaledSlope(root * slope, root * by_seat))
+        if isinstance(bound, ComponentBound | OnsetBound):
+            self._add_multiplier("force", bound.force_multiplier(multiplier))
+        elif isinstance(bound, NormBound):
+            self._add_length(bound, multiplier[0])
         return value.reshape(-1)
+
+    def finish(self) -> None:
+        """Hand on what was collected."""
+        self.total.parts.append(
+            SeatBlocks(
+                self.unknowns.seat_windows,
+                self.first,
+                self.slopes,
+                curvature_of(self.seat, self.multipliers),
+                self.across,
+                self._seat_curvature(),
+            )
+        )
+
+    def _add_multiplier(self, quantity: Quantity, multiplier: Floats) -> None:
+        known = self.multipliers.get(quantity)
+        self.multipliers[quantity] = multiplier if known is None else known + multiplier
+
+    def _add_interval_squares(self, slope: Floats, by_seat: Floats, stiffness: Floats) -> None:
+        """Add the squares of rows that belong to both points of an interval."""
+        windows = self.unknowns.seat_windows
+        if self.turns:
+            stiff = slope * np.tile(stiffness, (1, POINTS))
+            both = np.tile(by_seat, (1, 1, POINTS))
+            self.across += np.einsum("krm,srm->skm", stiff, both)
+        corner = np.einsum("srm,trm,rm->st", by_seat, by_seat, stiffness)
+        scaled = np.sqrt(stiffness) * windows.to_window(slope)
+        self.total.parts.append(IntervalSquares(windows, self.first, scaled, corner))
+
+    def _add_length(self, bound: NormBound, multiplier: Floats) -> None:
+        """Add the curvature of a bound on a length: a square's, and the quantity's own."""
+        weight = 2.0 * multiplier / bound.bound**2
+        self._add_multiplier(bound.quantity, weight * value_of(self.seat, bound.quantity))
+        by_seat = np.zeros((len(self.turns), 3, len(weight)))
+        for s, turned in enumerate(self.turned):
+            by_seat[s] = _turned_value(self.seat, turned, bound.quantity)
+        slope = slope_of(self.seat, bound.quantity)
+        self.slopes.append(ScaledSlope(slope, by_seat, weight))
 
     def _by_seat(self, bound: LocalBound, shape: tuple[int, ...]) -> Floats:
         """Return the derivatives of a bound's rows by the seat's angles, (s, r, m)."""
@@ -143,52 +191,22 @@ class Chunk:
                 by_seat[s] = 2.0 / bound.bound**2 * along
         return by_seat
 
-    def _push_length(self, bound: NormBound, multiplier: Floats) -> None:
-        """Add the curvature of a bound on a length: a square's, and the quantity's own."""
-        weight = 2.0 * multiplier / bound.bound**2
-        self._push(bound.quantity, weight * value_of(self.seat, bound.quantity))
-        root = np.sqrt(weight)
-        self.slopes.append(root * slope_of(self.seat, bound.quantity))
-        if self.turns:
-            self.turned_slopes.append(
-                root * np.stack([_turned_value(self.seat, t, bound.quantity) for t in self.turned])
-            )
-
-    def finish(self) -> None:
-        """Bring what was collected to the control points and the seat's angles."""
-        pairs = VARIABLES * (VARIABLES + 1) // 2
-        hessian = squares(self.slopes) if self.slopes else np.zeros((pairs, self.across.shape[2]))
-        if self.share > 0.0:
-            hessian += curvature_of(self.seat, self.multipliers)
-        self.program.windows.scatter_hessian(hessian, self.first, self.total.band)
-        if not self.turns:
-            return
-        count = len(self.turns)
-        across = self.across
-        for slope, by_seat in zip(self.slopes, self.turned_slopes, strict=True):
-            across[:, : len(slope)] += np.einsum("krm,srm->skm", slope, by_seat)
-            self.total.corner += np.einsum("srm,trm->st", by_seat, by_seat)
+    def _seat_curvature(self) -> SeatCurvature:
+        """Return the second derivatives by the seat's angles times the multipliers."""
+        across: list[tuple[int, Floats]] = []
+        corner: list[tuple[int, int, float]] = []
         for s, one in enumerate(self.turned):
-            for quantity, push in self.multipliers.items():
-                bent = _turned_slope(self.seat, one, quantity)
-                across[s, : len(bent)] += np.einsum("kcm,cm->km", bent, push)
-                for t in range(s, count):
+            for quantity, multiplier in self.multipliers.items():
+                slope = _turned_slope(self.seat, one, quantity)
+                across.append((s, np.einsum("kcm,cm->km", slope, multiplier)))
+                for t in range(s, len(self.turns)):
                     # the outer turn acts on what the inner one has changed
                     twice = self.turns[t].of(one)
                     value = _turned_value(self.seat, twice, quantity)
                     if quantity == "force":
                         value = value + _both_turned(one, self.turned[t])
-                    amount = float(np.sum(push * value))
-                    self.total.corner[s, t] += amount
-                    if s != t:
-                        self.total.corner[t, s] += amount
-        for s in range(count):
-            column = self.total.border[s].reshape(-1, JOINTS)
-            self.program.windows.scatter(across[s], self.first, column)
-
-    def _push(self, quantity: Quantity, push: Floats) -> None:
-        known = self.multipliers.get(quantity)
-        self.multipliers[quantity] = push if known is None else known + push
+                    corner.append((s, t, float(np.sum(multiplier * value))))
+        return SeatCurvature(across, corner)
 
 
 def _turned_value(seat: SeatMotion, turned: SeatMotion, quantity: Quantity) -> Floats:

@@ -59,13 +59,15 @@ class GroundCross:
 
     def curvature(self, z: Floats, residual: Floats) -> Floats:
         """Return ``residual' d2 residual``, its upper triangle, (15, m)."""
-        angles, push = _angles(z), self.root.T @ residual
-        along = np.einsum("mpc,cm->pm", coriolis_pairs(self.chain, angles, "report"), push)
+        angles, multiplier = _angles(z), self.root.T @ residual
+        along = np.einsum("mpc,cm->pm", coriolis_pairs(self.chain, angles, "report"), multiplier)
         turned = coriolis_pairs_gradient(self.chain, angles, "report")[:, :2]
-        bent = coriolis_pairs_hessian(self.chain, angles, "report")[:, :2, :2]
+        second = coriolis_pairs_hessian(self.chain, angles, "report")[:, :2, :2]
         hessian = np.zeros((len(_PAIR), z.shape[1]))
-        by_angles = np.einsum("mabpc,cm,pm->abm", bent, push, _products(z), optimize=True)
-        by_both = np.einsum("mapc,cm,rpm->arm", turned, push, _product_slopes(z), optimize=True)
+        by_angles = np.einsum("mabpc,cm,pm->abm", second, multiplier, _products(z), optimize=True)
+        by_both = np.einsum(
+            "mapc,cm,rpm->arm", turned, multiplier, _product_slopes(z), optimize=True
+        )
         for a in range(2):
             for b in range(a, 2):
                 hessian[_PAIR[a, b]] = by_angles[a, b]

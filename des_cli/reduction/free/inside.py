@@ -13,8 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from des_cli.model.arrays import Flags, Floats
+from des_cli.reduction.free.expansion import MotionExpansion
 from des_cli.reduction.free.program import MotionProgram
-from des_cli.reduction.free.system import MotionExpansion, MotionSystem
+from des_cli.reduction.free.system import MotionSystem
 from des_cli.solver.barrier import Options, Step, minimise
 from des_cli.solver.feasible_program import Values
 
@@ -26,7 +27,7 @@ LITTLE_ROOM = 1e-3
 """The least that it may leave."""
 
 AIM = 0.01
-"""How far inside a bound at points the penalty pulls."""
+"""How far inside a bound at points the penalty aims."""
 
 BEYOND = 0.05
 """How far beyond where it stands an exceeded budget is relaxed."""
@@ -40,7 +41,7 @@ ROUNDS, EACH = 40, 12
 CENTRAL = Options(gap=1.0, start_gap=10.0, max_iterations=EACH)
 """A large barrier keeps away from everything that could be in the way."""
 
-PULLED = Options(gap=1e-4, start_gap=0.1, max_iterations=4 * EACH)
+ACTING = Options(gap=1e-4, start_gap=0.1, max_iterations=4 * EACH)
 """A small one lets the penalty act."""
 
 
@@ -71,8 +72,8 @@ def find_inside(
         at_points = _largest(values.local) >= 1.0 - LITTLE_ROOM
         before = _excess(values, at_points)
         if at_points:
-            pulled = _Penalised(plain, over)
-            x = minimise(pulled, x, replace(PULLED, stop_early=pulled.inside), on_step).x
+            penalised = _Penalised(plain, over)
+            x = minimise(penalised, x, replace(ACTING, stop_early=penalised.inside), on_step).x
         else:
             relaxed = _Relaxed(_nearest(program, over > 0.0), over)
             x = minimise(relaxed, x, replace(CENTRAL, stop_early=relaxed.inside), on_step).x
@@ -132,18 +133,18 @@ class _Relaxed(_Wrapped):
         return Values(values.cost, values.budgets - self._shift, values.local)
 
     def expand(
-        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
+        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats
     ) -> MotionExpansion:
         """Expand, shifted."""
-        expansion = self._program.expand(x, budget, local, stiffness, share)
+        expansion = self._program.expand(x, budget, local, stiffness)
         expansion.budgets = expansion.budgets - self._shift
         return expansion
 
     def system(
-        self, expansion: MotionExpansion, stiffness: Floats, shift: float
+        self, expansion: MotionExpansion, share: float, stiffness: Floats, shift: float
     ) -> MotionSystem | None:
         """Factorise."""
-        return self._program.system(expansion, stiffness, shift)
+        return self._program.system(expansion, share, stiffness, shift)
 
     def inside(self, budgets: Floats) -> bool:
         """Return whether the last iterate is inside without the shift."""
@@ -164,20 +165,20 @@ class _Penalised(_Wrapped):
         return Values(cost, values.budgets - self._shift, np.zeros(0))
 
     def expand(
-        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
+        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats
     ) -> _PenaltyExpansion:
         """Expand the penalty; where it is zero it has no curvature."""
         excess = np.maximum(self._program.values(x).local - (1.0 - AIM), 0.0)
         slope = 2.0 * excess / len(excess)
-        bend = 2.0 * (excess > 0.0) / len(excess)
-        inner = self._program.expand(x, budget, slope, bend, share)
+        curvature = 2.0 * (excess > 0.0) / len(excess)
+        inner = self._program.expand(x, budget, slope, curvature)
         return _PenaltyExpansion(inner, float(np.mean(excess**2)), slope, self._shift)
 
     def system(
-        self, expansion: _PenaltyExpansion, stiffness: Floats, shift: float
+        self, expansion: _PenaltyExpansion, share: float, stiffness: Floats, shift: float
     ) -> MotionSystem | None:
         """Factorise."""
-        return self._program.system(expansion.inner, stiffness, shift)
+        return self._program.system(expansion.inner, share, stiffness, shift)
 
     def inside(self, budgets: Floats) -> bool:
         """Return whether the last iterate keeps the bounds at points."""

@@ -71,7 +71,7 @@ class LimitRows:
     ends : Ends
         Ends that are kept need no rows.
     margin : float
-        Share of each limit that is left unused.
+        Share of each limit that is left unused [1].
     ties : sequence of Tie
     """
 

@@ -68,9 +68,9 @@ class ComponentBound:
 
     def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers, (36, m)."""
-        return curvature_of(seat, {"force": self.push(multiplier)})
+        return curvature_of(seat, {"force": self.force_multiplier(multiplier)})
 
-    def push(self, multiplier: Floats) -> Floats:
+    def force_multiplier(self, multiplier: Floats) -> Floats:
         """Return the force's multipliers, (3, m), of the rows', (rows, m)."""
         return np.asarray((self.direction / self.scale[:, None]).T @ multiplier)
 
@@ -108,16 +108,16 @@ class NormBound:
     def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers, (36, m)."""
         weight = 2.0 * multiplier / self.bound**2
-        bent = curvature_of(seat, {self.quantity: weight * value_of(seat, self.quantity)})
+        hessian = curvature_of(seat, {self.quantity: weight * value_of(seat, self.quantity)})
         by = slope_of(seat, self.quantity)
         at_pair = 0
         for k in range(VARIABLES):
             if k < len(by):
-                bent[at_pair : at_pair + len(by) - k] += weight[0] * np.einsum(
+                hessian[at_pair : at_pair + len(by) - k] += weight[0] * np.einsum(
                     "cm,lcm->lm", by[k], by[k:]
                 )
             at_pair += VARIABLES - k
-        return bent
+        return hessian
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,8 +159,8 @@ class AttitudeBound:
 
     def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers, (6, m)."""
-        bent = self.rotation.gradient().gradient()(angles.T)  # (m, 3, 3, 9)
-        along = np.einsum("mabc,cm->abm", bent, self.reference[:, at])
+        second = self.rotation.gradient().gradient()(angles.T)  # (m, 3, 3, 9)
+        along = np.einsum("mabc,cm->abm", second, self.reference[:, at])
         upper = along[np.triu_indices(3)]
         return np.asarray(-2.0 * self._per_chord * multiplier[0] * upper)
 
@@ -195,12 +195,12 @@ class OnsetBound:
 
     def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
         """Return the second derivatives times multipliers (rows, count), (36, 2 count)."""
-        return curvature_of(seat, {"force": self.push(multiplier)})
+        return curvature_of(seat, {"force": self.force_multiplier(multiplier)})
 
-    def push(self, multiplier: Floats) -> Floats:
+    def force_multiplier(self, multiplier: Floats) -> Floats:
         """Return the force's multipliers, (3, 2 count), of the rows', (rows, count)."""
-        push = self.direction.T @ multiplier
-        return np.concatenate([-push, push], axis=1)
+        second = self.direction.T @ multiplier  # of the second point; the first has its negative
+        return np.concatenate([-second, second], axis=1)
 
     def along(self, change: Floats) -> Floats:
         """Return what a change of the force, (3, 2 count), changes of the rows."""

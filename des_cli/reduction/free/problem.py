@@ -38,7 +38,6 @@ from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.response import Response
-from des_cli.reduction.free.asked import Asked, is_rough
 from des_cli.reduction.free.ground_cross import GroundCross
 from des_cli.reduction.free.limit_rows import LimitRows, Tie
 from des_cli.reduction.free.local_bounds import (
@@ -48,8 +47,10 @@ from des_cli.reduction.free.local_bounds import (
     NormBound,
     OnsetBound,
 )
-from des_cli.reduction.free.program import SEAT_VARIABLES, FreeSeat, MotionProblem
+from des_cli.reduction.free.motion_problem import FreeSeat, MotionProblem
+from des_cli.reduction.free.requested import Requested, is_rough
 from des_cli.reduction.free.terms import JointBudget, Quantity, Term
+from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import JOINTS as COMPONENTS
 from des_cli.reduction.free.windows import Windows
 from des_cli.reduction.reference import sample_motion, sample_sides
@@ -156,16 +157,16 @@ class FreeTask:
             shortfall=shortfall,
         ).with_response()
 
-    def asked(self) -> Response:
+    def requested(self) -> Response:
         """Return what is asked of the seat, at both ends of every interval."""
         if self.response is not None:
             return self.response
-        made = respond_on(self.chain, self.machine.gravity, self.reference)
-        return with_shortfall(made, self.shortfall)
+        response = respond_on(self.chain, self.machine.gravity, self.reference)
+        return with_shortfall(response, self.shortfall)
 
     def rough(self, grid: SplineGrid) -> bool:
         """Return whether what is asked is faster than the knots of a grid."""
-        return not self.round_base and is_rough(self.asked(), self.reference.t, grid.step)
+        return not self.round_base and is_rough(self.requested(), self.reference.t, grid.step)
 
     @property
     def held(self) -> Record:
@@ -190,7 +191,7 @@ class FreeTask:
 
     def with_response(self) -> FreeTask:
         """Return the task with what it would evaluate for every grid."""
-        return replace(self, response=self.asked())
+        return replace(self, response=self.requested())
 
     @property
     def chain(self) -> Chain:
@@ -248,11 +249,11 @@ def pose_motion(
         else sample_motion(task.reference, times)
     )
     seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
-    asked = _asked(seat, task, windows)
+    requested = _requested(seat, task, windows)
     # Of a rough record no motion makes the cross-coupling: costs are relative to the base's.
     along = _along(grid, base) if task.rough(grid) else None
     size = cross_coupling(task, grid) if along is None else _energy(task, grid, *along)
-    measures = _Measures(grid, base, angle, asked, size)
+    measures = _Measures(grid, base, angle, requested, size)
     acceleration_limit = np.array([limit.acceleration for limit in task.machine.limits])
     unit = np.where(np.isfinite(acceleration_limit), acceleration_limit, UNIT_ACCELERATION)
     return MotionProblem(
@@ -302,11 +303,11 @@ def in_ground_axes(reduction: Reduction) -> bool:
     return reduction.axes == "report" and not isotropic
 
 
-def _asked(seat: SeatMotion, task: FreeTask, windows: Windows) -> Asked:
+def _requested(seat: SeatMotion, task: FreeTask, windows: Windows) -> Requested:
     """Return what is asked of the seat: at the points, or of a rough record by its samples."""
     if task.rough(windows.grid):
-        return Asked.projected(task.asked(), task.reference.t, windows)
-    return Asked.at_points(seat, task.reference, task.shortfall, windows.times())
+        return Requested.projected(task.requested(), task.reference.t, windows)
+    return Requested.at_points(seat, task.reference, task.shortfall, windows.times())
 
 
 class _Measures:
@@ -317,10 +318,10 @@ class _Measures:
         grid: SplineGrid,
         base: Floats,
         angle: Floats,
-        asked: Asked,
+        requested: Requested,
         size: float,
     ) -> None:
-        self.grid, self.base, self.angle, self.asked = grid, base, angle, asked
+        self.grid, self.base, self.angle, self.requested = grid, base, angle, requested
         self.size = max(size, 1e-300)
         self.weight = 0.5 * grid.step
 
@@ -330,10 +331,10 @@ class _Measures:
         if reduction.objective != "felt" and not in_ground_axes(reduction):
             terms.append(Term("cross", self._cross_root(reduction)))
         if reduction.objective != "coriolis":
-            cross = self.asked.values["cross"]
+            cross = self.requested.values["cross"]
             share = BLEND if reduction.objective == "blend" else 1.0
             isotropic = np.sqrt(share * np.trace(reduction.r1) / 3.0 * self.weight / self.size)
-            target = self.asked.values["acceleration"] - cross
+            target = self.requested.values["acceleration"] - cross
             terms.append(Term("acceleration", isotropic * np.eye(3), target))
         return terms
 
@@ -366,12 +367,12 @@ class _Measures:
 
     def _per_size(self, quantity: Quantity) -> float:
         """Return one over the norm of a quantity of the reference."""
-        return 1.0 / max(float(np.sqrt(self.asked.square[quantity])), 1e-150)
+        return 1.0 / max(float(np.sqrt(self.requested.square[quantity])), 1e-150)
 
     def _term(self, quantity: Quantity, scale: float) -> Term:
-        asked = self.asked
-        floor = scale**2 * asked.floor[quantity]
-        return Term(quantity, scale * np.eye(3), asked.values[quantity], floor)
+        requested = self.requested
+        floor = scale**2 * requested.floor[quantity]
+        return Term(quantity, scale * np.eye(3), requested.values[quantity], floor)
 
     def _joints(self, most: float) -> JointBudget:
         windows = Windows(self.grid, tuple((0, joint) for joint in range(COMPONENTS)))
@@ -392,20 +393,20 @@ def _point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) -
     """Return a budget that bounds every point."""
     if budget.metric == ATTITUDE_ERROR:
         return _attitude_bound(task, times, angle, budget.most)
-    peak = np.max(np.linalg.norm(task.asked().seat_angular_acceleration, axis=-1))
+    peak = np.max(np.linalg.norm(task.requested().seat_angular_acceleration, axis=-1))
     return NormBound("acceleration", budget.most * max(float(peak), UNFELT_ANGULAR_ACCELERATION))
 
 
 def _attitude_bound(task: FreeTask, times: Floats, angle: Floats, most_deg: float) -> AttitudeBound:
     coefficient = task.chain.transform.coefficient[..., :3, :3]
     attitude = TrigPolynomial(coefficient.reshape(3, 3, 3, 9))
-    asked = attitude(angle)
+    requested = attitude(angle)
     if task.shortfall is not None:
         missing = task.shortfall.attitude
         sides = np.stack([missing[:-1], missing[1:]], axis=1)
         turn = rotation(sample_sides(task.reference.t, sides, times))
-        asked = (asked.reshape(-1, 3, 3) @ turn).reshape(-1, 9)
-    return AttitudeBound(attitude, asked.T, float(np.radians(most_deg)))
+        requested = (requested.reshape(-1, 3, 3) @ turn).reshape(-1, 9)
+    return AttitudeBound(attitude, requested.T, float(np.radians(most_deg)))
 
 
 def _occupant_bounds(occupant: OccupantBounds, grid: SplineGrid, room: float) -> list[LocalBound]:

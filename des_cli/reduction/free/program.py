@@ -9,8 +9,9 @@ rows over differences of control points (``limit_rows``).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,104 +19,69 @@ from des_cli.kinematics.seat_turn import SeatTurn
 from des_cli.kinematics.twist import SeatForms, SeatMotion
 from des_cli.model.arrays import Floats
 from des_cli.reduction.free.chunk import Chunk
+from des_cli.reduction.free.expansion import MotionExpansion
 from des_cli.reduction.free.ground_cross import GROUND_VARIABLES, GroundCross, squares_of
-from des_cli.reduction.free.limit_rows import LimitRows
+from des_cli.reduction.free.hessian import ConstantBand, PointBlocks, SeatWeight
 from des_cli.reduction.free.local_bounds import AttitudeBound, LocalBound, OnsetBound
-from des_cli.reduction.free.system import MotionExpansion, MotionSystem, factorise
+from des_cli.reduction.free.motion_problem import MotionProblem
+from des_cli.reduction.free.system import MotionSystem, factorise
 from des_cli.reduction.free.terms import JointBudget, Term, square
+from des_cli.reduction.free.unknowns import Unknowns
 from des_cli.reduction.free.windows import JOINTS, POINTS, Windows
 from des_cli.solver.band import SymmetricBand
 from des_cli.solver.feasible_program import Values
-from des_cli.solver.spline import GAUSS, Ends, SplineGrid
-
-SEAT_VARIABLES = ((0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2))
-"""Order and joint of the variables of ``kinematics.twist``, in their order."""
+from des_cli.solver.spline import GAUSS
 
 
 @dataclass(frozen=True, eq=False)
-class FreeSeat:
-    """How the seat's free angles change what is felt.
+class Iterate:
+    """A program evaluated at a point.
 
     Parameters
     ----------
-    count : int
-        Free angles, s.
-    at : callable
-        Of the angles' change (s,) [rad]: the forms of the seat, and for each angle how
-        everything changes with it further, the outermost in the chain last.
-    weight : float
-        On the squared change, which determines it where nothing else does [1/rad^2].
+    x : (N,) array
+    turns : sequence of SeatTurn
+        How everything changes with each free angle of the seat.
+    seats : sequence of SeatMotion
+        The seat's motion on each span of intervals.
+    values : Values
     """
 
-    count: int
-    at: Callable[[Floats], tuple[SeatForms, Sequence[SeatTurn]]]
-    weight: float
-
-
-@dataclass(frozen=True, eq=False)
-class MotionProblem:
-    """Everything that defines a free motion's program.
-
-    Parameters
-    ----------
-    grid : SplineGrid
-    base : (n, 3) array
-        Control points of the executable motion that deviations are added to [rad].
-    forms : SeatForms
-        Of the seat as the profile fixes it.
-    cost : sequence of Term or JointBudget
-        Summed up.
-    ground : GroundCross, optional
-        A further cost, of the cross-coupling in ground axes.
-    budgets : sequence of Term or JointBudget
-        Each at most one.
-    rows : LimitRows
-    ends : Ends
-    smoothing : (3,) array
-        Weight on the squared jerk of the deviation, per joint [s^5/rad^2].
-    local : sequence of LocalBound
-        Bounds at points.
-    seat : FreeSeat, optional
-    """
-
-    grid: SplineGrid
-    base: Floats
-    forms: SeatForms
-    cost: Sequence[Term | JointBudget]
-    budgets: Sequence[Term | JointBudget]
-    rows: LimitRows
-    ends: Ends
-    smoothing: Floats
-    local: Sequence[LocalBound] = field(default_factory=tuple)
-    seat: FreeSeat | None = None
-    ground: GroundCross | None = None
+    x: Floats
+    turns: Sequence[SeatTurn]
+    seats: Sequence[SeatMotion]
+    values: Values
 
 
 class MotionProgram:
-    """The program of a `MotionProblem`.
+    """The program of a `MotionProblem`; for its vectors see `Unknowns`.
 
-    A vector of the full space is flat: control points, (n, 3), then the seat's angles.
+    The last iterate's evaluation is kept, so that the derivatives are taken of the motion
+    whose values were computed already.
     """
 
     def __init__(self, problem: MotionProblem) -> None:
         self.problem = problem
         grid = problem.grid
-        self.windows = Windows(grid, SEAT_VARIABLES)
-        self.angles = Windows(grid, tuple((0, joint) for joint in range(JOINTS)))
-        self.chunks = self.windows.chunks()
-        self._base = [self.windows.gather(problem.base, *span) for span in self.chunks]
+        self.unknowns = Unknowns(grid, problem.seat.count if problem.seat else 0)
+        self.control, self.seat_angles = self.unknowns.control, self.unknowns.seat_angles
+        windows = self.unknowns.seat_windows
+        self.chunks = windows.chunks()
+        self._base = [windows.gather(problem.base, *span) for span in self.chunks]
         needs_angles = any(isinstance(bound, AttitudeBound) for bound in problem.local)
         self._base_angles = [
-            self.angles.gather(problem.base, *span) if needs_angles else np.zeros((JOINTS, 0))
+            self.unknowns.angle_windows.gather(problem.base, *span)
+            if needs_angles
+            else np.zeros((JOINTS, 0))
             for span in self.chunks
         ]
-        self.ground = Windows(grid, GROUND_VARIABLES)
+        self._ground = Windows(grid, GROUND_VARIABLES)
         self._base_ground = [
-            self.ground.gather(problem.base, *span) if problem.ground else np.zeros((0, 0))
+            self._ground.gather(problem.base, *span) if problem.ground else np.zeros((0, 0))
             for span in self.chunks
         ]
+        self._iterate: Iterate | None = None
         self.bounds = problem.rows.bounds
-        self.free_angles = problem.seat.count if problem.seat else 0
         self._per_jerk = np.broadcast_to(
             2.0 * grid.step * problem.smoothing, (grid.intervals, JOINTS)
         )
@@ -132,7 +98,12 @@ class MotionProgram:
     @property
     def size(self) -> int:
         """Length of a vector of the full space."""
-        return self.problem.base.size + self.free_angles
+        return self.unknowns.size
+
+    @property
+    def free_angles(self) -> int:
+        """Free angles of the seat."""
+        return self.unknowns.angles
 
     def linear(self, x: Floats) -> Floats:
         """Return the limited quantities."""
@@ -145,65 +116,47 @@ class MotionProgram:
     def linear_adjoint(self, multiplier: Floats) -> Floats:
         """Return the transposed rows times multipliers."""
         adjoint = np.zeros(self.size)
-        adjoint[: self.problem.base.size] = self.problem.rows.adjoint(multiplier).reshape(-1)
+        self.control(adjoint)[:] = self.problem.rows.adjoint(multiplier)
         return adjoint
 
     def reduce(self, gradient: Floats) -> Floats:
         """Return a gradient by the free unknowns."""
         reduced = gradient.copy()
-        kept = self.problem.ends.reduce(self.control(gradient))
-        reduced[: self.problem.base.size] = kept.reshape(-1)
+        self.control(reduced)[:] = self.problem.ends.reduce(self.control(gradient))
         return reduced
 
-    def control(self, x: Floats) -> Floats:
-        """Return the part of a vector that is control points, (n, 3)."""
-        return x[: self.problem.base.size].reshape(-1, JOINTS)
-
-    def seat_angles(self, x: Floats) -> Floats:
-        """Return the part of a vector that is the seat's angles [rad]."""
-        return x[self.problem.base.size :]
+    def at(self, x: Floats) -> Iterate:
+        """Evaluate the functions, or return what they are at the last point asked for."""
+        if self._iterate is None or not np.array_equal(self._iterate.x, x):
+            self._iterate = self._evaluated(x.copy())
+        return self._iterate
 
     def values(self, x: Floats) -> Values:
         """Evaluate cost, budgets and local bounds."""
-        problem, control = self.problem, self.control(x)
-        forms, _ = self._forms(x)
-        cost, budgets = 0.0, np.array([budget.floor for budget in problem.budgets])
-        local: list[list[Floats]] = [[] for _ in problem.local]
-        for chunk, (first, last) in enumerate(self.chunks):
-            seat = forms.at(self._base[chunk] + self.windows.gather(control, first, last))
-            at = slice(POINTS * first, POINTS * last)
-            cost += sum(self._value(t, seat, control, first, last) for t in problem.cost)
-            for j, budget in enumerate(problem.budgets):
-                budgets[j] += self._value(budget, seat, control, first, last)
-            if problem.ground:
-                z = self._base_ground[chunk] + self.ground.gather(control, first, last)
-                cost += square(problem.ground.residual(z))
-            if problem.local:
-                angles = self._angles_of(chunk, control)
-                for found, bound in zip(local, problem.local, strict=True):
-                    found.append(bound.value(seat, angles, at).reshape(-1))
-        cost += self._smoothness(control) + self._seat_cost(x)
-        return Values(cost, budgets, _joined(local))
+        return self.at(x).values
 
     def expand(
-        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats, share: float
+        self, x: Floats, budget: Floats, local: Floats, stiffness: Floats
     ) -> MotionExpansion:
         """Evaluate with first derivatives and the Hessian of the Lagrangian."""
         problem, control = self.problem, self.control(x)
-        forms, turns = self._forms(x)
-        total = MotionExpansion.zero(self, len(problem.budgets))
-        total.band.data += self._smooth.data
-        total.budgets += [budget.floor for budget in problem.budgets]
+        iterate = self.at(x)
+        total = MotionExpansion(self.unknowns, len(problem.budgets))
+        total.parts.append(ConstantBand(self._smooth))
+        total.budgets += [each.floor for each in problem.budgets]
         found: list[list[Floats]] = [[] for _ in problem.local]
         for chunk, (first, last) in enumerate(self.chunks):
-            seat = forms.at(self._base[chunk] + self.windows.gather(control, first, last))
-            local_at = Chunk(self, total, seat, turns, share, first, last)
+            # a copy, so that the derivatives of the motion last no longer than their span
+            seat = copy(iterate.seats[chunk])
+            local_at = Chunk(total, seat, iterate.turns, first, last)
             for term in problem.cost:
-                total.cost += local_at.take(term, 1.0, total.gradient, control)
+                total.cost += self._take(local_at, term, 1.0, control, total.gradient)
             for j, each in enumerate(problem.budgets):
-                total.budgets[j] += local_at.take(each, budget[j], total.by_budget[j], control)
+                total.budgets[j] += self._take(
+                    local_at, each, budget[j], control, total.by_budget[j]
+                )
             if problem.ground:
-                total.cost += self._take_ground(problem.ground, chunk, control, share, total)
+                total.cost += self._take_ground(problem.ground, chunk, control, total)
             if problem.local:
                 angles = self._angles_of(chunk, control)
                 for index, bound in enumerate(problem.local):
@@ -215,55 +168,87 @@ class MotionProgram:
         factors = [*np.ones(len(problem.cost)), *budget]
         for each, factor in zip([*problem.cost, *problem.budgets], factors, strict=True):
             if isinstance(each, JointBudget):
-                total.band.data += (2.0 * each.scale * factor) * self._mass.data
+                total.parts.append(ConstantBand(self._mass, 2.0 * each.scale * factor))
         jerk = problem.grid.differences(control, 3)
         total.cost += self._smoothness(control) + self._seat_cost(x)
         of_motion = self.control(total.gradient)
         of_motion += problem.grid.differences_adjoint(self._per_jerk * jerk, 3)
         if problem.seat:
-            total.gradient[problem.base.size :] += problem.seat.weight * self.seat_angles(x)
-            total.corner += problem.seat.weight * np.eye(self.free_angles)
+            of_angles = self.seat_angles(total.gradient)
+            of_angles += problem.seat.weight * self.seat_angles(x)
+            total.parts.append(SeatWeight(problem.seat.weight))
         total.local = _joined(found)
         return total
 
     def system(
-        self, expansion: MotionExpansion, stiffness: Floats, shift: float
+        self, expansion: MotionExpansion, share: float, stiffness: Floats, shift: float
     ) -> MotionSystem | None:
         """Factorise over the free unknowns."""
-        return factorise(expansion, self.problem.rows, self.problem.ends, stiffness, shift)
+        problem = self.problem
+        return factorise(expansion.hessian(share), problem.rows, problem.ends, stiffness, shift)
 
-    def off(self, budget: JointBudget, control: Floats, first: int, last: int) -> Floats:
-        """Return how far the angles are from the reference at points, (3, m) [rad]."""
-        moved = self.angles.gather(control, first, last)
-        return np.asarray(budget.off[:, POINTS * first : POINTS * last] + moved)
+    def _evaluated(self, x: Floats) -> Iterate:
+        problem, control = self.problem, self.control(x)
+        forms, turns = self._forms(x)
+        cost, budgets = 0.0, np.array([budget.floor for budget in problem.budgets])
+        local: list[list[Floats]] = [[] for _ in problem.local]
+        seats: list[SeatMotion] = []
+        for chunk, (first, last) in enumerate(self.chunks):
+            deviation = self.unknowns.seat_windows.gather(control, first, last)
+            seat = forms.at(self._base[chunk] + deviation)
+            at = slice(POINTS * first, POINTS * last)
+            cost += sum(self._value(t, seat, control, first, last) for t in problem.cost)
+            for j, budget in enumerate(problem.budgets):
+                budgets[j] += self._value(budget, seat, control, first, last)
+            if problem.ground:
+                cost += square(problem.ground.residual(self._ground_at(chunk, control)))
+            if problem.local:
+                angles = self._angles_of(chunk, control)
+                for found, bound in zip(local, problem.local, strict=True):
+                    found.append(bound.value(seat, angles, at).reshape(-1))
+            seats.append(seat)
+        cost += self._smoothness(control) + self._seat_cost(x)
+        return Iterate(x, turns, seats, Values(cost, budgets, _joined(local)))
 
     def _value(
         self, term: Term | JointBudget, seat: SeatMotion, control: Floats, first: int, last: int
     ) -> float:
         """Return what a term or budget is on a chunk."""
+        at = slice(POINTS * first, POINTS * last)
         if isinstance(term, JointBudget):
-            return term.scale * square(self.off(term, control, first, last))
-        return square(term.residual(seat, slice(POINTS * first, POINTS * last)))
+            deviation = self.unknowns.angle_windows.gather(control, first, last)
+            return term.scale * square(term.residual(deviation, at))
+        return square(term.residual(seat, at))
+
+    def _take(
+        self,
+        chunk: Chunk,
+        term: Term | JointBudget,
+        factor: float,
+        control: Floats,
+        gradient: Floats,
+    ) -> float:
+        """Add a term or budget on a chunk; return its value."""
+        if isinstance(term, JointBudget):
+            return chunk.take_joints(term, control, gradient)
+        return chunk.take(term, factor, gradient)
 
     def _take_ground(
-        self,
-        term: GroundCross,
-        chunk: int,
-        control: Floats,
-        share: float,
-        total: MotionExpansion,
+        self, term: GroundCross, chunk: int, control: Floats, total: MotionExpansion
     ) -> float:
         """Add the cost in ground axes on a chunk; return its value."""
-        first, last = self.chunks[chunk]
-        z = self._base_ground[chunk] + self.ground.gather(control, first, last)
+        first, _ = self.chunks[chunk]
+        z = self._ground_at(chunk, control)
         residual, slope = term.residual(z), term.slope(z)
         by_variable = np.einsum("krm,rm->km", slope, 2.0 * residual)
-        self.ground.scatter(by_variable, first, self.control(total.gradient))
-        hessian = 2.0 * squares_of(slope)
-        if share > 0.0:
-            hessian += 2.0 * share * term.curvature(z, residual)
-        self.ground.scatter_hessian(hessian, first, total.band)
+        self._ground.scatter(by_variable, first, self.control(total.gradient))
+        convex, curvature = 2.0 * squares_of(slope), 2.0 * term.curvature(z, residual)
+        total.parts.append(PointBlocks(self._ground, first, convex, curvature))
         return square(residual)
+
+    def _ground_at(self, chunk: int, control: Floats) -> Floats:
+        """Return what the cost in ground axes depends on, (5, m)."""
+        return self._base_ground[chunk] + self._ground.gather(control, *self.chunks[chunk])
 
     def _forms(self, x: Floats) -> tuple[SeatForms, Sequence[SeatTurn]]:
         if self.problem.seat is None:
@@ -274,7 +259,9 @@ class MotionProgram:
         """Return the joint angles at a chunk's points, if a bound needs them."""
         if not self._base_angles[chunk].size:
             return self._base_angles[chunk]
-        return self._base_angles[chunk] + self.angles.gather(control, *self.chunks[chunk])
+        return self._base_angles[chunk] + self.unknowns.angle_windows.gather(
+            control, *self.chunks[chunk]
+        )
 
     def _rows_of(self, index: int, chunk: int) -> slice:
         """Return where a bound's rows of a chunk stand among all local rows."""

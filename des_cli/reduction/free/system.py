@@ -1,134 +1,24 @@
-"""Derivatives of a free motion's program, and the linear system of its Newton steps.
+"""The linear system of a Newton step of a free motion: a bordered band, factorised.
 
-The Hessian is a band over the control points, bordered by a column for each free angle
-of the seat::
+With B the band over the control points, b the border and c the corner, see ``hessian``::
 
-    [ band    border ]
-    [ border' corner ]
+    [ B  b' ]     [ L         . ] [ L'  L^-1 b' ]
+    [       ]  =  [             ] [             ]        S = c - b B^-1 b'
+    [ b  c  ]     [ b L'^-1   1 ] [ .      S    ]
+
+L is banded as B is, and S, the Schur complement, has one row for each free angle.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from des_cli.model.arrays import Floats
+from des_cli.reduction.free.hessian import BorderedBand
 from des_cli.reduction.free.limit_rows import LimitRows
-from des_cli.reduction.free.windows import JOINTS, POINTS, Windows
-from des_cli.solver.band import BandCholesky, SymmetricBand
+from des_cli.reduction.free.windows import JOINTS
+from des_cli.solver.band import BandCholesky
 from des_cli.solver.spline import Ends
-
-if TYPE_CHECKING:
-    from des_cli.reduction.free.program import MotionProgram
-
-
-class MotionExpansion:
-    """Functions and derivatives at a point; see ``solver.barrier.Expansion``.
-
-    Parameters
-    ----------
-    points : int
-        Control points.
-    angles : int
-        Free angles of the seat, s.
-    budgets : int
-    """
-
-    def __init__(self, points: int, angles: int, budgets: int) -> None:
-        size = points * JOINTS + angles
-        self.cost = 0.0
-        self.budgets = np.zeros(budgets)
-        self.local = np.zeros(0)
-        self.gradient = np.zeros(size)
-        self.by_budget = np.zeros((budgets, size))
-        self.band = SymmetricBand(points, JOINTS)
-        self.border = np.zeros((angles, points * JOINTS))
-        self.corner = np.zeros((angles, angles))
-        self._kept: list[_Rows] = []
-
-    @classmethod
-    def zero(cls, program: MotionProgram, budgets: int) -> MotionExpansion:
-        """Return an expansion to add to."""
-        return cls(program.problem.grid.points, program.free_angles, budgets)
-
-    @property
-    def budget_gradients(self) -> Floats:
-        """The budgets' gradients as columns."""
-        return self.by_budget.T
-
-    def keep(
-        self, rows: slice, windows: Windows, slope: Floats, by_seat: Floats, first: int
-    ) -> None:
-        """Keep the slopes of a local bound's rows on a span of intervals.
-
-        Parameters
-        ----------
-        rows : slice
-            Where they stand among all local rows.
-        windows : Windows
-        slope : (v, r, m) array
-            By the local variables of the points.
-        by_seat : (s, r, m) array
-            By the seat's free angles.
-        first : int
-            The span's first interval.
-        """
-        self._kept.append(_Rows(rows, windows, slope, by_seat, first))
-
-    def local_change(self, step: Floats) -> Floats:
-        """Return the derivative of the local bounds along a step."""
-        change = np.zeros_like(self.local)
-        control = step[: self.border.shape[1]].reshape(-1, JOINTS)
-        for kept in self._kept:
-            moved = kept.windows.gather(control, kept.first, kept.last)
-            by_point = np.einsum("vrm,vm->rm", kept.slope, moved)
-            turned = np.einsum("srm,s->rm", kept.by_seat, step[self.border.shape[1] :])
-            change[kept.rows] = (kept.sum_points(by_point) + turned).reshape(-1)
-        return change
-
-    def local_adjoint(self, multiplier: Floats) -> Floats:
-        """Return the transposed derivative times multipliers."""
-        adjoint = np.zeros_like(self.gradient)
-        control = adjoint[: self.border.shape[1]].reshape(-1, JOINTS)
-        for kept in self._kept:
-            rows = multiplier[kept.rows].reshape(kept.slope.shape[1], -1)
-            adjoint[self.border.shape[1] :] += np.einsum("srm,rm->s", kept.by_seat, rows)
-            push = kept.at_points(rows)
-            kept.windows.scatter(np.einsum("vrm,rm->vm", kept.slope, push), kept.first, control)
-        return adjoint
-
-
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    """Rows of a local bound on a span of intervals."""
-
-    rows: slice
-    windows: Windows
-    slope: Floats
-    by_seat: Floats
-    first: int
-
-    @property
-    def last(self) -> int:
-        return self.first + int(self.slope.shape[-1]) // POINTS
-
-    @property
-    def _per_interval(self) -> bool:
-        """Whether a row belongs to both points of an interval, and not to one."""
-        points = self.slope.shape[-1]
-        return bool(self.rows.stop - self.rows.start != self.slope.shape[1] * points)
-
-    def sum_points(self, values: Floats) -> Floats:
-        """Return the rows' values of values at points."""
-        if not self._per_interval:
-            return values
-        return np.asarray(values.reshape(len(values), POINTS, -1).sum(axis=1))
-
-    def at_points(self, values: Floats) -> Floats:
-        """Return at each point what its row says."""
-        return np.tile(values, (1, POINTS)) if self._per_interval else values
 
 
 class MotionSystem:
@@ -173,10 +63,21 @@ class MotionSystem:
 
 
 def factorise(
-    expansion: MotionExpansion, rows: LimitRows, ends: Ends, stiffness: Floats, shift: float
+    hessian: BorderedBand, rows: LimitRows, ends: Ends, stiffness: Floats, shift: float
 ) -> MotionSystem | None:
-    """Factorise the Hessian with the rows' stiffness; None where it is not convex."""
-    band = expansion.band.copy()
+    """Factorise a Hessian with the rows' stiffness; None where it is not convex.
+
+    Parameters
+    ----------
+    hessian : BorderedBand
+    rows : LimitRows
+    ends : Ends
+    stiffness : (m,) array
+        Weights of the squared rows.
+    shift : float
+        That the band's diagonal grows by, relative to itself.
+    """
+    band = hessian.band.copy()
     rows.add_to(band, stiffness)
     if shift:
         band.data[:, :, 0] *= 1.0 + shift
@@ -185,7 +86,7 @@ def factorise(
         return None
     points = len(band.data)
     border: Floats = np.array(
-        [ends.reduce(row.reshape(-1, JOINTS)).reshape(-1) for row in expansion.border]
-    ).reshape(len(expansion.border), points * JOINTS)
-    system = MotionSystem(factor, ends, points, border, expansion.corner)
+        [ends.reduce(row.reshape(-1, JOINTS)).reshape(-1) for row in hessian.border]
+    ).reshape(len(hessian.border), points * JOINTS)
+    system = MotionSystem(factor, ends, points, border, hessian.corner)
     return system if not len(border) or system.convex else None

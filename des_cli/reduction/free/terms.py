@@ -34,7 +34,7 @@ class Term:
     reference : (3, p) array, optional
         At all points; None for zero.
     floor : float
-        What the term has beside the points' squares, whatever the motion.
+        What the term has beside the points' squares, whatever the motion, in their unit.
     """
 
     quantity: Quantity
@@ -134,6 +134,18 @@ class JointBudget:
     scale: float
     off: Floats
     floor: float = 0.0
+
+    def residual(self, deviation: Floats, at: slice) -> Floats:
+        """Return how far the angles are from the reference's, (3, m) [rad].
+
+        Parameters
+        ----------
+        deviation : (3, m) array
+            Of the angles from the base at points [rad].
+        at : slice
+            Which points of all.
+        """
+        return np.asarray(self.off[:, at] + deviation)
 
 
 def square(residual: Floats) -> float:

@@ -63,9 +63,9 @@ def test_slopes(term, z):
 
 
 def test_curvature(term, z, rng):
-    push = rng.normal(size=(3, M))
-    found = term.curvature(z, push)
-    expected = differences(lambda y: np.einsum("krm,rm->km", term.slope(y), push), z)
+    multiplier = rng.normal(size=(3, M))
+    found = term.curvature(z, multiplier)
+    expected = differences(lambda y: np.einsum("krm,rm->km", term.slope(y), multiplier), z)
     np.testing.assert_allclose(found, expected[UPPER], rtol=1e-6, atol=1e-6)
 
 

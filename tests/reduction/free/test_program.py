@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.twist import SeatForms
 from des_cli.model.machine import OccupantBounds, Seat
 from des_cli.model.machines import DES
 from des_cli.reduction.free import windows
@@ -101,11 +102,11 @@ def multipliers(program, x, rng):
     return rng.random(len(values.budgets)), *rng.random((2, len(values.local)))
 
 
-def hessian_times(program, expansion, step):
+def hessian_times(program, hessian, step):
     """The bordered band times a vector of the full space."""
     n = program.problem.base.size
-    motion = expansion.band.times(step[:n].reshape(-1, 3)).ravel() + expansion.border.T @ step[n:]
-    return np.concatenate([motion, expansion.border @ step[:n] + expansion.corner @ step[n:]])
+    motion = hessian.band.times(step[:n].reshape(-1, 3)).ravel() + hessian.border.T @ step[n:]
+    return np.concatenate([motion, hessian.border @ step[:n] + hessian.corner @ step[n:]])
 
 
 def central(function, x, step):
@@ -123,15 +124,46 @@ def test_expanded_values_are_the_values(program, rng):
         values = program.values(x)
         if fresh:
             program.values(2.0 * x)
-        expansion = program.expand(x, *multipliers(program, x, rng), 1.0)
+        expansion = program.expand(x, *multipliers(program, x, rng))
         assert expansion.cost == pytest.approx(values.cost, rel=1e-12)
         np.testing.assert_allclose(expansion.budgets, values.budgets, rtol=1e-12)
         np.testing.assert_allclose(expansion.local, values.local, rtol=1e-12)
 
 
+def test_an_iterate_is_evaluated_once(program, rng, monkeypatch):
+    evaluate, calls = SeatForms.at, []
+
+    def counted(forms, z):
+        calls.append(z.shape[1])
+        return evaluate(forms, z)
+
+    monkeypatch.setattr(SeatForms, "at", counted)
+    x = wiggle(program)
+    arguments = multipliers(program, x, rng)
+    expansion = program.expand(x, *arguments)
+    for share in (1.0, 0.5, 0.25, 0.0):
+        program.system(expansion, share, np.ones_like(program.bounds), 0.0)
+    assert sum(calls) == 2 * program.problem.grid.intervals
+    before = program.values(x).cost
+    x *= 2.0  # the same array, and another point
+    assert program.values(x).cost != before
+    assert sum(calls) == 4 * program.problem.grid.intervals
+
+
+def test_a_hessian_does_not_depend_on_the_one_before(program, rng):
+    x = wiggle(program)
+    arguments = multipliers(program, x, rng)
+    expansion = program.expand(x, *arguments)
+    expansion.hessian(1.0)
+    found, alone = expansion.hessian(0.5), program.expand(x, *arguments).hessian(0.5)
+    np.testing.assert_array_equal(found.band.data, alone.band.data)
+    np.testing.assert_array_equal(found.border, alone.border)
+    np.testing.assert_array_equal(found.corner, alone.corner)
+
+
 def test_first_derivatives(program, rng):
     x = wiggle(program)
-    expansion = program.expand(x, *multipliers(program, x, rng), 1.0)
+    expansion = program.expand(x, *multipliers(program, x, rng))
     for _ in range(3):
         step = rng.normal(size=program.size)
         same(expansion.gradient @ step, central(lambda y: program.values(y).cost, x, step))
@@ -140,9 +172,9 @@ def test_first_derivatives(program, rng):
             central(lambda y: program.values(y).budgets, x, step),
         )
         same(expansion.local_change(step), central(lambda y: program.values(y).local, x, step))
-        push = rng.normal(size=len(expansion.local))
-        assert push @ expansion.local_change(step) == pytest.approx(
-            expansion.local_adjoint(push) @ step, rel=1e-9, abs=1e-12
+        multiplier = rng.normal(size=len(expansion.local))
+        assert multiplier @ expansion.local_change(step) == pytest.approx(
+            expansion.local_adjoint(multiplier) @ step, rel=1e-9, abs=1e-12
         )
 
 
@@ -154,26 +186,27 @@ def test_the_hessian_of_the_lagrangian(program, rng, chunk, monkeypatch):
     budget, local, stiffness = multipliers(program, x, rng)
 
     def gradient(y):
-        e = program.expand(y, budget, local, stiffness, 1.0)
+        e = program.expand(y, budget, local, stiffness)
         return e.gradient + e.budget_gradients @ budget + e.local_adjoint(local)
 
-    expansion = program.expand(x, budget, local, stiffness, 1.0)
+    expansion = program.expand(x, budget, local, stiffness)
     for _ in range(2):
         step = rng.normal(size=program.size)
         barrier = expansion.local_adjoint(stiffness * expansion.local_change(step))
-        same(hessian_times(program, expansion, step), central(gradient, x, step) + barrier, 1e-5)
+        found = hessian_times(program, expansion.hessian(1.0), step)
+        same(found, central(gradient, x, step) + barrier, 1e-5)
 
 
 def test_without_its_curvature_the_hessian_is_convex(program, rng):
     x = wiggle(program)
-    arguments = multipliers(program, x, rng)
-    plain, whole, half = (program.expand(x, *arguments, share) for share in (0.0, 1.0, 0.5))
+    expansion = program.expand(x, *multipliers(program, x, rng))
+    plain, whole, half = (expansion.hessian(share) for share in (0.0, 1.0, 0.5))
     for _ in range(5):
         step = rng.normal(size=program.size)
         assert step @ hessian_times(program, plain, step) > 0.0
         between = 0.5 * (hessian_times(program, plain, step) + hessian_times(program, whole, step))
         same(hessian_times(program, half, step), between, 1e-10)
-    assert program.system(plain, np.ones_like(program.bounds), 0.0) is not None
+    assert program.system(expansion, 0.0, np.ones_like(program.bounds), 0.0) is not None
 
 
 def dense_of(function, size):
@@ -185,8 +218,8 @@ def test_the_linear_rows_and_the_ends(program, rng):
     change = program.linear_change(step)
     found = program.linear(x + step) - program.linear(x)
     np.testing.assert_allclose(found, change, rtol=0, atol=1e-10 * np.abs(change).max())
-    push = rng.normal(size=len(program.bounds))
-    assert push @ change == pytest.approx(program.linear_adjoint(push) @ step, rel=1e-9)
+    multiplier = rng.normal(size=len(program.bounds))
+    assert multiplier @ change == pytest.approx(program.linear_adjoint(multiplier) @ step, rel=1e-9)
     reduced = program.reduce(step)
     idle = program.problem.ends.idle(program.problem.grid.points).ravel()
     assert not reduced[: len(idle)][idle].any()
@@ -195,9 +228,9 @@ def test_the_linear_rows_and_the_ends(program, rng):
 
 def test_systems_are_those_of_the_bordered_hessian(program, rng):
     x = wiggle(program)
-    expansion = program.expand(x, *multipliers(program, x, rng), 0.0)
+    expansion = program.expand(x, *multipliers(program, x, rng))
     stiffness = rng.random(len(program.bounds))
-    system = program.system(expansion, stiffness, 0.0)
+    system = program.system(expansion, 0.0, stiffness, 0.0)
     right = rng.normal(size=(program.size, 2))
     solution = system.solve(right)
     n = program.problem.base.size
@@ -207,7 +240,7 @@ def test_systems_are_those_of_the_bordered_hessian(program, rng):
             np.where(program.problem.ends.idle(n // 3), 0.0, step[:n].reshape(-1, 3))
         )
         np.testing.assert_allclose(kept.ravel(), step[:n], rtol=0, atol=1e-8 * np.abs(step).max())
-        product = hessian_times(program, expansion, step)
+        product = hessian_times(program, expansion.hessian(0.0), step)
         product += program.linear_adjoint(stiffness * program.linear_change(step))
         same(program.reduce(product), program.reduce(b), 1e-7)
 
@@ -215,14 +248,15 @@ def test_systems_are_those_of_the_bordered_hessian(program, rng):
 def test_what_is_not_convex_has_no_system():
     program = PROGRAMS["coriolis"]()
     x = wiggle(program)
-    expansion = program.expand(x, np.zeros(0), np.zeros(0), np.zeros(0), 1.0)
-    expansion.band.data[:, :, 0] -= 10.0 * np.abs(expansion.band.data).max()
-    assert program.system(expansion, np.zeros_like(program.bounds), 0.0) is None
+    expansion = program.expand(x, np.zeros(0), np.zeros(0), np.zeros(0))
+    band = expansion.hessian(1.0).band  # the one that is factorised next
+    band.data[:, :, 0] -= 10.0 * np.abs(band.data).max()
+    assert program.system(expansion, 1.0, np.zeros_like(program.bounds), 0.0) is None
     seat = PROGRAMS["seat"]()
     x = wiggle(seat)
-    expansion = seat.expand(x, np.zeros(len(ALL_BUDGETS)), np.zeros(0), np.zeros(0), 0.0)
-    expansion.corner -= 1e6 * np.eye(2)
-    assert seat.system(expansion, np.zeros_like(seat.bounds), 0.0) is None
+    expansion = seat.expand(x, np.zeros(len(ALL_BUDGETS)), np.zeros(0), np.zeros(0))
+    expansion.hessian(0.0).corner[:] -= 1e6 * np.eye(2)
+    assert seat.system(expansion, 0.0, np.zeros_like(seat.bounds), 0.0) is None
 
 
 def test_the_smoothing_is_on_the_deviation_alone():
@@ -249,7 +283,7 @@ def test_bounds_at_points_know_the_seats_angles(bound, rng):
         task_of(smooth(), budget, machine, optimise=("seat_yaw", "seat_pitch")), **further
     )
     x = wiggle(program)
-    expansion = program.expand(x, *multipliers(program, x, rng), 1.0)
+    expansion = program.expand(x, *multipliers(program, x, rng))
     step = np.zeros(program.size)
     step[-2:] = 1.0
     chained = central(lambda y: program.values(y).local, x, step)

@@ -77,8 +77,8 @@ def test_slopes_and_multipliers(quantity, root, z, rng):
     np.testing.assert_allclose(slope, expected[: len(slope)], rtol=1e-6, atol=1e-6)
     assert not expected[len(slope) :].any()
     # half the derivative of the term by the value
-    push = term.multiplier(term.residual(seat, at))
-    gradient = np.einsum("kcm,cm->km", slope_of(seat, quantity), 2.0 * push)
+    multiplier = term.multiplier(term.residual(seat, at))
+    gradient = np.einsum("kcm,cm->km", slope_of(seat, quantity), 2.0 * multiplier)
     term_by_point = differences(lambda y: np.sum(term.residual(FORMS.at(y), at) ** 2, axis=0), z)
     np.testing.assert_allclose(gradient, term_by_point[: len(slope)], rtol=1e-5, atol=1e-4)
 
@@ -89,9 +89,9 @@ def test_curvature(kinds, z, rng):
 
     def gradient(y):
         total, seat = np.zeros((VARIABLES, M)), FORMS.at(y)
-        for quantity, push in multipliers.items():
+        for quantity, multiplier in multipliers.items():
             slope = slope_of(seat, quantity)
-            total[: len(slope)] += np.einsum("kcm,cm->km", slope, push)
+            total[: len(slope)] += np.einsum("kcm,cm->km", slope, multiplier)
         return total
 
     found = curvature_of(FORMS.at(z), multipliers)

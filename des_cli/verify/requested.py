@@ -12,10 +12,10 @@ from des_cli.model.profile import BodyRates, Command, GCommand
 from des_cli.verify.felt import Felt
 
 
-def as_asked(felt: Felt, command: Command | None, missing: Shortfall | None) -> Felt:
+def as_requested(felt: Felt, command: Command | None, missing: Shortfall | None) -> Felt:
     """Return what is felt of a joint motion with what was asked for beyond it.
 
-    Recorded rates and an asked G are taken from the profile itself, whatever became of them.
+    Recorded rates and a requested G are taken from the profile itself, whatever became of them.
 
     Parameters
     ----------

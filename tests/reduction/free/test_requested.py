@@ -7,8 +7,8 @@ import pytest
 
 from des_cli.kinematics.response import respond_on
 from des_cli.model.motion import Motion
-from des_cli.reduction.free.asked import Asked, is_rough
-from des_cli.reduction.free.program import SEAT_VARIABLES
+from des_cli.reduction.free.requested import Requested, is_rough
+from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import Windows
 from des_cli.solver.spline import GAUSS, SplineGrid
 from tests.support.free_motions import task_of
@@ -30,14 +30,14 @@ def motion_of(t, noise, seed=3):
 def projected(motion):
     task = task_of(motion, {})
     response = respond_on(task.chain, task.machine.gravity, motion)
-    return Asked.projected(response, motion.t, WINDOWS), response
+    return Requested.projected(response, motion.t, WINDOWS), response
 
 
 @pytest.mark.parametrize("rows", [401, 257, 161], ids=["finer", "uneven", "half a knot"])
 def test_squares_of_what_is_linear_between_knots_are_those_at_all_samples(rows):
     t = np.linspace(0.0, 4.0, rows)
     motion = motion_of(t, 0.3)
-    asked, response = projected(motion)
+    requested, response = projected(motion)
     # a W with corners at the knots, and its values at the points
     rng = np.random.default_rng(4)
     ends = rng.normal(size=(3, GRID.intervals, 2))
@@ -57,11 +57,11 @@ def test_squares_of_what_is_linear_between_knots_are_those_at_all_samples(rows):
         value = ends[:, k, 0] + u * (ends[:, k, 1] - ends[:, k, 0])
         cross += np.sum(weight * value * response.seat_rate[:, side].T)
     half = 0.5 * GRID.step
-    assert half * np.sum(at_points * asked.values["rate"]) == pytest.approx(cross, rel=1e-9)
+    assert half * np.sum(at_points * requested.values["rate"]) == pytest.approx(cross, rel=1e-9)
     square = np.sum(weight[:, None, None] * response.seat_rate**2)
-    assert half * asked.square["rate"] == pytest.approx(square, rel=1e-12)
-    left = asked.square["rate"] - np.sum(asked.values["rate"] ** 2)
-    assert asked.floor["rate"] == pytest.approx(left, rel=1e-12)
+    assert half * requested.square["rate"] == pytest.approx(square, rel=1e-12)
+    left = requested.square["rate"] - np.sum(requested.values["rate"] ** 2)
+    assert requested.floor["rate"] == pytest.approx(left, rel=1e-12)
 
 
 @pytest.mark.parametrize("rows", [401, 257, 161])
@@ -76,5 +76,5 @@ def test_a_rough_record_is_told_from_a_maneuver(rows):
 
 def test_rows_that_are_longer_than_the_knots_leave_no_interval_without_any():
     t = np.linspace(0.0, 4.0, 21)
-    asked, _ = projected(motion_of(t, 0.0))
-    assert np.all(np.any(asked.values["rate"] != 0.0, axis=0))
+    requested, _ = projected(motion_of(t, 0.0))
+    assert np.all(np.any(requested.values["rate"] != 0.0, axis=0))

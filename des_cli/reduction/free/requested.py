@@ -43,7 +43,7 @@ QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
 
 @dataclass(frozen=True)
-class Asked:
+class Requested:
     """The quantities of terms, as they are asked for.
 
     Parameters
@@ -63,7 +63,7 @@ class Asked:
     @classmethod
     def at_points(
         cls, seat: SeatMotion, reference: Motion, shortfall: Shortfall | None, times: Floats
-    ) -> Asked:
+    ) -> Requested:
         """Take a record that is resolved at the points.
 
         Parameters
@@ -83,7 +83,7 @@ class Asked:
         return cls(values, square, dict.fromkeys(QUANTITIES, 0.0))
 
     @classmethod
-    def projected(cls, response: Response, t: Floats, windows: Windows) -> Asked:
+    def projected(cls, response: Response, t: Floats, windows: Windows) -> Requested:
         """Project a record's samples.
 
         Parameters

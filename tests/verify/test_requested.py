@@ -1,4 +1,4 @@
-"""What is asked for beyond a joint motion, as the verification has it."""
+"""What is requested for beyond a joint motion, as the verification has it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.profile import BodyRates, Profile
-from des_cli.verify.asked import as_asked
 from des_cli.verify.felt import SeatChain
+from des_cli.verify.requested import as_requested
 
 RNG = np.random.default_rng(6)
 
@@ -27,30 +27,30 @@ def case():
 
 def test_recorded_rates_are_the_profiles_own():
     felt, profile, shortfall = case()
-    asked = as_asked(felt, profile.command, shortfall)
+    requested = as_requested(felt, profile.command, shortfall)
     command = profile.command
     assert isinstance(command, BodyRates)
-    np.testing.assert_array_equal(asked.rate[:, :10].T, command.start)
-    np.testing.assert_array_equal(asked.rate[:, 10:].T, command.end)
+    np.testing.assert_array_equal(requested.rate[:, :10].T, command.start)
+    np.testing.assert_array_equal(requested.rate[:, 10:].T, command.end)
 
 
 def test_the_rest_is_what_is_made_and_what_is_missing():
     felt, profile, shortfall = case()
-    asked = as_asked(felt, profile.command, shortfall)
+    requested = as_requested(felt, profile.command, shortfall)
     for field, sides in (
         ("g", shortfall.seat_g),
         ("turning", shortfall.seat_angular_acceleration),
     ):
-        added = getattr(asked, field) - getattr(felt, field)
+        added = getattr(requested, field) - getattr(felt, field)
         np.testing.assert_allclose(added[:, :10].T, sides[:, 0], atol=1e-12)
         np.testing.assert_allclose(added[:, 10:].T, sides[:, 1], atol=1e-12)
-    np.testing.assert_array_equal(asked.cross, felt.cross)
+    np.testing.assert_array_equal(requested.cross, felt.cross)
     made = Rotation.from_matrix(np.moveaxis(felt.rotation, 2, 0))
     turn = np.concatenate([shortfall.attitude[:-1], shortfall.attitude[1:]])
     expected = (made * Rotation.from_rotvec(turn)).as_matrix()
-    np.testing.assert_allclose(np.moveaxis(asked.rotation, 2, 0), expected, atol=1e-12)
+    np.testing.assert_allclose(np.moveaxis(requested.rotation, 2, 0), expected, atol=1e-12)
 
 
 def test_nothing_missing_is_the_motion_itself():
     felt, profile, _ = case()
-    assert as_asked(felt, profile.command, None) is felt
+    assert as_requested(felt, profile.command, None) is felt

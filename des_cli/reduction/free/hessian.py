@@ -1,0 +1,256 @@
+"""The Hessian of a free motion's Lagrangian, for any share of its curvature.
+
+It is a band over the n control points, bordered by a row for each of the s free angles
+of the seat. With d = 3 joints a control point meets those of the four intervals that it
+shapes, so that the half-bandwidth is 4 d - 1 = 11; of the symmetric half is kept, in
+blocks of (3, 3), ::
+
+    P0    | x
+    P1    | x x
+    P2    | x x x              band    (n, 3, 12), see ``solver.band``
+    P3    | x x x x
+    P4    |   x x x x          (P4 no longer meets P0)
+    P5    |     x x x x
+          +------------
+    angle | x x x x x x  x     border  (s, 3 n), corner (s, s)
+
+Its convex part are squares of derivatives; its curvature, second derivatives times
+multipliers, alone can be indefinite. What it is made of is kept by its parts, span by
+span, so that another share of the curvature costs no evaluation of the motion. Parts are
+added in one order, whatever the share: sums of rounded numbers depend on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from des_cli.kinematics.twist import VARIABLES
+from des_cli.model.arrays import Floats
+from des_cli.reduction.free.terms import squares
+from des_cli.reduction.free.windows import JOINTS, Windows
+from des_cli.solver.band import SymmetricBand
+
+
+@dataclass(frozen=True, eq=False)
+class BorderedBand:
+    """A symmetric matrix over control points and free angles of the seat.
+
+    Parameters
+    ----------
+    band : SymmetricBand
+    border : (s, 3 n) array
+    corner : (s, s) array
+    """
+
+    band: SymmetricBand
+    border: Floats
+    corner: Floats
+
+    @classmethod
+    def zero(cls, points: int, angles: int) -> BorderedBand:
+        """Return a matrix to add to."""
+        return cls(
+            SymmetricBand(points, JOINTS),
+            np.zeros((angles, points * JOINTS)),
+            np.zeros((angles, angles)),
+        )
+
+
+class HessianPart(Protocol):
+    """Something that adds to a Hessian."""
+
+    def add_to(self, hessian: BorderedBand, share: float) -> None:
+        """Add the convex part, and a share of the curvature, 0 to 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class ConstantBand:
+    """A multiple of a constant band."""
+
+    band: SymmetricBand
+    factor: float = 1.0
+
+    def add_to(self, hessian: BorderedBand, share: float) -> None:
+        """Add it; it is convex."""
+        hessian.band.data += self.factor * self.band.data
+
+
+@dataclass(frozen=True, eq=False)
+class SeatWeight:
+    """A weight on the squares of the seat's free angles [1/rad^2]."""
+
+    weight: float
+
+    def add_to(self, hessian: BorderedBand, share: float) -> None:
+        """Add it; it is convex."""
+        hessian.corner[:] += self.weight * np.eye(len(hessian.corner))
+
+
+@dataclass(frozen=True, eq=False)
+class PointBlocks:
+    """Second derivatives by the local variables of the m points of a span.
+
+    Parameters
+    ----------
+    windows : Windows
+        Of v local variables.
+    first : int
+        The span's first interval.
+    convex, curvature : (v (v + 1) / 2, m) array
+        Upper triangles.
+    """
+
+    windows: Windows
+    first: int
+    convex: Floats
+    curvature: Floats
+
+    def add_to(self, hessian: BorderedBand, share: float) -> None:
+        """Add them by the control points."""
+        blocks = self.convex + share * self.curvature if share > 0.0 else self.convex
+        self.windows.scatter_hessian(blocks, self.first, hessian.band)
+
+
+@dataclass(frozen=True, eq=False)
+class IntervalSquares:
+    """Squares of derivatives by the windows of a span's intervals.
+
+    Parameters
+    ----------
+    windows : Windows
+    first : int
+        The span's first interval.
+    slope : (12, r, count) array
+        By the coordinates of each interval's window, scaled.
+    corner : (s, s) array
+        Squares of the same by the seat's angles.
+    """
+
+    windows: Windows
+    first: int
+    slope: Floats
+    corner: Floats
+
+    def add_to(self, hessian: BorderedBand, share: float) -> None:
+        """Add them; they are convex."""
+        self.windows.scatter_squares(self.slope, self.first, hessian.band)
+        hessian.corner[:] += self.corner
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledSlope:
+    """Derivatives of r residuals whose squares belong to the Hessian.
+
+    Parameters
+    ----------
+    slope : (v, r, m) array
+        By the first v local variables of m points.
+    by_seat : (s, r, m) array
+        By the seat's free angles.
+    weight : (m,) array, optional
+        Where the squares are curvature, the weight of these at its full share; without
+        one the derivatives are scaled already.
+    """
+
+    slope: Floats
+    by_seat: Floats
+    weight: Floats | None = None
+
+    def at(self, share: float) -> tuple[Floats, Floats]:
+        """Return both, scaled for a share of the curvature."""
+        if self.weight is None:
+            return self.slope, self.by_seat
+        root = np.sqrt(share * self.weight)
+        return root * self.slope, root * self.by_seat
+
+
+@dataclass(frozen=True, eq=False)
+class SeatCurvature:
+    """Second derivatives by the seat's angles times multipliers, on a span.
+
+    Parameters
+    ----------
+    across : sequence of (int, (v, m) array)
+        A free angle, and the derivatives by it and the first v local variables.
+    corner : sequence of (int, int, float)
+        Two free angles, and the derivative by both.
+    """
+
+    across: Sequence[tuple[int, Floats]] = ()
+    corner: Sequence[tuple[int, int, float]] = ()
+
+
+class SeatBlocks:
+    """Second derivatives by what the seat's motion depends on, on a span of m points.
+
+    Parameters
+    ----------
+    windows : Windows
+    first : int
+        The span's first interval.
+    slopes : sequence of ScaledSlope
+        What the convex part is made of.
+    curvature : (36, m) array
+        Upper triangle.
+    across : (s, 8, m) array
+        Derivatives by the seat's angles and the local variables that come first.
+    by_seat : SeatCurvature
+    """
+
+    def __init__(
+        self,
+        windows: Windows,
+        first: int,
+        slopes: Sequence[ScaledSlope],
+        curvature: Floats,
+        across: Floats,
+        by_seat: SeatCurvature,
+    ) -> None:
+        self._windows, self._first = windows, first
+        self._curvature, self._across, self._by_seat = curvature, across, by_seat
+        self._convex: Floats | None = None
+        self._slopes: Sequence[ScaledSlope] = slopes
+        if all(each.weight is None for each in slopes):
+            self._convex = self._squares([each.slope for each in slopes])
+            if not len(across):
+                self._slopes = ()  # nothing more is made of them
+
+    def _squares(self, slopes: list[Floats]) -> Floats:
+        """Return the sum of squares, (36, m)."""
+        if slopes:
+            return squares(slopes)
+        return np.zeros((VARIABLES * (VARIABLES + 1) // 2, self._across.shape[2]))
+
+    def add_to(self, hessian: BorderedBand, share: float) -> None:
+        """Add them by the control points and the seat's angles."""
+        slopes = [s.at(share) for s in self._slopes if share > 0.0 or s.weight is None]
+        blocks = self._convex
+        if blocks is None:
+            blocks = self._squares([slope for slope, _ in slopes])
+        if share > 0.0:
+            blocks = blocks + share * self._curvature
+        self._windows.scatter_hessian(blocks, self._first, hessian.band)
+        if len(self._across):
+            self._add_border(hessian, slopes, share)
+
+    def _add_border(
+        self, hessian: BorderedBand, slopes: list[tuple[Floats, Floats]], share: float
+    ) -> None:
+        across = self._across.copy()
+        for slope, by_seat in slopes:
+            across[:, : len(slope)] += np.einsum("krm,srm->skm", slope, by_seat)
+            hessian.corner[:] += np.einsum("srm,trm->st", by_seat, by_seat)
+        if share > 0.0:
+            for s, each in self._by_seat.across:
+                across[s, : len(each)] += share * each
+            for s, t, amount in self._by_seat.corner:
+                hessian.corner[s, t] += share * amount
+                if s != t:
+                    hessian.corner[t, s] += share * amount
+        for s, each in enumerate(across):
+            column = hessian.border[s].reshape(-1, JOINTS)
+            self._windows.scatter(each, self._first, column)
