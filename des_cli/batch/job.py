@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from des_cli.errors import ExitCode, Failure
+from des_cli.profiles_in.setting import AnySetting
 
 if TYPE_CHECKING:
     from des_cli.model.solution import Iteration
@@ -26,8 +27,8 @@ class Job:
     ----------
     source : str
         A path, the name of a built-in profile, or ``-``.
-    settings : tuple of str
-        Overrides, ``reduction.r2=0.2``.
+    settings : tuple of str or Setting
+        Overrides, ``reduction.r2=0.2``, and what options say.
     columns : mapping of str to str
         Names of a CSV's columns: ours to the file's.
     separator, decimal : str, optional
@@ -52,7 +53,7 @@ class Job:
     """
 
     source: str
-    settings: tuple[str, ...] = ()
+    settings: tuple[AnySetting, ...] = ()
     columns: Mapping[str, str] = field(default_factory=dict)
     separator: str | None = None
     decimal: str | None = None

@@ -30,6 +30,7 @@ from des_cli.cli.sweep_options import (
     read_weights,
 )
 from des_cli.errors import Complaint, ExitCode, FileAccessError
+from des_cli.profiles_in.setting import AnySetting
 
 if TYPE_CHECKING:
     from des_cli.model.profile import Control, Profile
@@ -104,7 +105,7 @@ def sweep(
     r2s: tuple[float, ...] | None,
     controls: tuple[str, ...],
     machine: str | None,
-    settings: tuple[str, ...],
+    settings: tuple[AnySetting, ...],
     columns: dict[str, str],
     separator: str | None,
     decimal: str | None,
@@ -161,7 +162,7 @@ def _plan(
         # what a budget buys is meant inside the limits, and so is what it is compared with
         base = reduction | {"limits": reduction["limits"] or "enforce"}
 
-    def job(own: Mapping[str, Any], *further: str) -> Job:
+    def job(own: Mapping[str, Any], *further: AnySetting) -> Job:
         settings = (*source.settings, *reduction_settings({**base, **own}), *further)
         return replace(source, settings=settings)
 
