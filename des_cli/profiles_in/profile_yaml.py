@@ -148,7 +148,7 @@ def validated(model: type[_AnySection], findings: Findings) -> _AnySection:
     except ValidationError as error:
         failed = findings.add_validation(error)
     rest = {key: value for key, value in data.items() if key not in failed}
-    rest = {key: value for key, value in rest.items() if key in model.model_fields}
+    rest = {key: value for key, value in rest.items() if key in model.known_keys()}
     required = {"format": "des-coriolis/1"} if "format" in model.model_fields else {}
     return model.model_validate(required | rest)
 
