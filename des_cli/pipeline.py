@@ -9,6 +9,7 @@ from dataclasses import replace
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond, respond_as_asked
 from des_cli.kinematics.smoothing import smooth_command
+from des_cli.model.metric import Budget
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Check, Run
@@ -64,6 +65,7 @@ def reduce_profile(
     found = find_motion(profile, asked, target, on_iteration, on_stage)
     on_stage("baselines")
     found, led = _with_leads(profile, found)
+    most = profile.reduction.budget_of_record
     profile = replace(profile, reduction=replace(profile.reduction, budget=found.budgets))
     modified = found.solution.modified
     before = respond_as_asked(profile.machine, profile.seat, asked)
@@ -71,8 +73,9 @@ def reduce_profile(
     measured = Measured(
         profile=profile,
         asked=asked,
-        target=target,
+        target=target.motion,
         desired=found.desired,
+        held=found.held,
         seat=found.seat,
         solution=found.solution,
         before=before,
@@ -99,7 +102,7 @@ def reduce_profile(
         commands=led,
         before=before,
         after=after,
-        checks=_checks(profile, asked, target, found, led),
+        checks=_checks(profile, asked, target, found, led, most),
         violations=measured.violations,
         metrics=metrics,
         notices=tuple(metrics["notices"]),
@@ -118,14 +121,14 @@ def _with_leads(profile: Profile, found: Found) -> tuple[Found, Motion]:
     return found, led.motion
 
 
-def _conditioned(profile: Profile, asked: DesiredMotion) -> Motion:
+def _conditioned(profile: Profile, asked: DesiredMotion) -> DesiredMotion:
     """Return what the reduction begins from: the record, smoothed where the profile says so."""
     cutoff_hz = profile.smooth_cutoff_hz
     if math.isinf(cutoff_hz):
-        return asked.motion
+        return asked
     record = _on_rows(profile, asked)
     smooth = smooth_command(record.t, record.command, cutoff_hz)
-    return find_desired(replace(record, command=smooth), divide=False).motion
+    return find_desired(replace(record, command=smooth), divide=False)
 
 
 def _on_rows(profile: Profile, asked: DesiredMotion) -> Profile:
@@ -134,7 +137,12 @@ def _on_rows(profile: Profile, asked: DesiredMotion) -> Profile:
 
 
 def _checks(
-    profile: Profile, asked: DesiredMotion, target: Motion, found: Found, commands: Motion
+    profile: Profile,
+    asked: DesiredMotion,
+    target: DesiredMotion,
+    found: Found,
+    commands: Motion,
+    most: tuple[Budget, ...],
 ) -> tuple[Check, ...]:
     if not found.solution.usable:
         return ()
@@ -146,7 +154,9 @@ def _checks(
         solution=found.solution,
         posed=found.posed,
         commands=commands,
-        target=target,
+        target=target.motion,
         shortfall=asked.shortfall,
+        held=found.held,
+        most=most,
     )
     return verify(claim)

@@ -1,12 +1,14 @@
 """Check what the documentation promises against the tool.
 
 Relative links resolve, headings that links point at exist, every command of a
-``console`` block exists with its options, and every command has a section in
-``docs/cli.md`` that names each of its options.
+``console`` block exists with its options, every command has a section in
+``docs/cli.md`` that names each of its options, the tables of ``docs/architecture.md``
+name the modules of their rooms, and sessions of nox that pages name exist.
 """
 
 from __future__ import annotations
 
+import ast
 import re
 import shlex
 import sys
@@ -19,10 +21,13 @@ from des_cli.cli.main import COMMANDS, PROGRAM, program
 
 ROOT = Path(__file__).resolve().parent.parent
 CLI_PAGE = ROOT / "docs" / "cli.md"
+ARCHITECTURE = ROOT / "docs" / "architecture.md"
 
 FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)[^)]*\)")
 HEADING = re.compile(r"^#+ +(.+?) *$", re.MULTILINE)
+ROOM = re.compile(r"^\| module of `([\w/]+)` \|[^\n]*\n\|[-|]+\n((?:\|[^\n]*\n)+)", re.MULTILINE)
+SESSIONS = re.compile(r"`nox -s ((?:\w+ ?)+)")
 SHELL_BREAKS = {"|", "||", "&&", ";", ">", ">>", "<", "2>"}
 
 
@@ -34,10 +39,11 @@ def main() -> int:
         text = page.read_text(encoding="utf-8")
         findings += [f"{page.relative_to(ROOT)}: {what}" for what in _findings(page, text)]
     findings += [f"{CLI_PAGE.relative_to(ROOT)}: {what}" for what in _undocumented()]
+    findings += [f"{ARCHITECTURE.relative_to(ROOT)}: {what}" for what in _misplaced()]
     for finding in findings:
         print(finding, file=sys.stderr)
     if not findings:
-        print(f"{len(pages)} pages: links, commands and options are right")
+        print(f"{len(pages)} pages: links, commands, options and modules are right")
     return bool(findings)
 
 
@@ -49,6 +55,9 @@ def _findings(page: Path, text: str) -> Iterator[str]:
         if language == "console":
             for line in _command_lines(block):
                 yield from _check_command(line)
+    for name in {name for names in SESSIONS.findall(text) for name in names.split()}:
+        if name not in _sessions():
+            yield f"nox has no session {name}"
 
 
 def _check_link(page: Path, target: str) -> Iterator[str]:
@@ -116,6 +125,25 @@ def _undocumented() -> Iterator[str]:
         for option in sorted(_options(command)):
             if option.startswith("--") and f"`{option}" not in said:
                 yield f"'## {name}' does not name `{option}`"
+
+
+def _misplaced() -> Iterator[str]:
+    """Yield which modules a table of the rooms names wrongly, or lacks."""
+    text = ARCHITECTURE.read_text(encoding="utf-8")
+    for room, rows in ROOM.findall(text):
+        cells = re.findall(r"^\| (.+?) \|", rows, re.MULTILINE)
+        named = {name for cell in cells for name in re.findall(r"`(\w+)`", cell)}
+        modules = {path.stem for path in (ROOT / "des_cli" / room).glob("*.py")} - {"__init__"}
+        for name in sorted(named - modules):
+            yield f"there is no module {name} in {room}"
+        for name in sorted(modules - named):
+            yield f"the table of {room} lacks {name}"
+
+
+def _sessions() -> set[str]:
+    """Return the names of the sessions of nox."""
+    tree = ast.parse((ROOT / "noxfile.py").read_text(encoding="utf-8"))
+    return {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
 
 
 def _options(command: click.Command) -> set[str]:

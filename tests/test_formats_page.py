@@ -139,6 +139,8 @@ def test_metrics(metrics: dict) -> None:
     metrics["solver"]["budget"] = None  # a mapping of metrics, or null
     assert metrics["asked_g"] is None
     metrics["asked_g"] = asked_g_metrics(GOffset(0.0, 0.0, 0.0, 0.0, 0.0))
+    assert metrics["added"] is None
+    metrics["added"] = {"budgets": None, "felt": None}  # of a changed record
     optional = {"recorded_attitude_error_max_deg", "r1"}
     for name, cell in rows:
         words = {part for word in named(cell) for part in word.split(".")}

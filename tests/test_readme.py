@@ -11,6 +11,8 @@ import pytest
 
 from des_cli import load_profile, reduce_profile
 
+pytestmark = pytest.mark.slow
+
 TEXT = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 WORDS = " ".join(TEXT.split())
 
@@ -123,3 +125,10 @@ def test_a_bound_on_the_angular_acceleration_costs_a_percent() -> None:
     for bounded, free in pairs:
         cost = shares(metrics(*ROWS[free]))[0] - shares(metrics(*ROWS[bounded]))[0]
         assert 0.0 < cost < 1.2  # percent points
+
+
+def test_the_line_that_checks_everything_is_the_one_that_the_gate_runs() -> None:
+    said = re.search(r"All checks, from a clean clone:\n\n```sh\n(.+)\n```", TEXT)
+    gate = (Path(__file__).parents[1] / ".ci" / "run").read_text(encoding="utf-8")
+    assert said is not None
+    assert said[1] == gate.splitlines()[-1]

@@ -38,12 +38,17 @@ def summary_rows(result: JobResult) -> list[tuple[str, str]]:
         ("", changes(metrics, ("seat_x", "seat_y", "seat_z"))),
         ("turning", _turning(metrics)),
         ("seat G", _force(metrics)),
-        ("budgets", ", ".join(map(str, spent_budgets(metrics)))),
+        ("budgets", _budgets(metrics)),
         ("constants", _constants(metrics)),
         ("ends", _ends(metrics)),
         ("study", "; ".join(_study(metrics))),
     ]
     return [(label, text) for label, text in rows if text]
+
+
+def _budgets(metrics: Mapping[str, Any]) -> str:
+    told = ", ".join(map(str, spent_budgets(metrics)))
+    return f"{told} (of what the reduction adds)" if told and metrics.get("added") else told
 
 
 def changed_words(metrics: Mapping[str, Any]) -> str:

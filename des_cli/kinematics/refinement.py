@@ -19,6 +19,7 @@ from des_cli.kinematics.orientation import body_jacobian
 from des_cli.kinematics.rate_field import RateField
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.gaps import longest_step
+from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION
 from des_cli.model.motion import Motion
 from des_cli.model.profile import BodyRates
 
@@ -33,6 +34,10 @@ Without it every row of a noisy record would be divided, to follow curves that a
 TURNING_TURN = 3e-5
 """The same for what the turning of the joints makes of a step, which adds up from step to
 step: over ten seconds of a record at 100 Hz to less than two degrees at the very worst."""
+
+FELT_SLOPE = 0.5 * UNFELT_ANGULAR_ACCELERATION
+"""Error of the seat's angular acceleration [rad/s^2] up to which the rows that are added hold
+it: a budget on it would else be spent by the steps of the table."""
 
 MOST_PIECES = 16
 """Pieces that an interval is divided into at a time, before its error is measured again."""
@@ -131,6 +136,9 @@ def _pieces(field: RateField, demand: Demand, divided: Flags, tolerance: float) 
     ratio = error / max(tolerance, np.finfo(np.float64).tiny)
     # The error falls with the square of the step.
     wanted = np.where(ratio > 1.0, np.exp2(np.ceil(0.5 * np.log2(np.maximum(ratio, 1.0)))), 1.0)
+    # Its slope, which the seat's angular acceleration is off by, falls with the step.
+    steep = np.maximum(4.0 * error / (demand.step * FELT_SLOPE), 1.0)
+    wanted[divided] = np.maximum(wanted, np.exp2(np.ceil(np.log2(steep))))[divided]
     wanted[(turn > SHAPE_TURN) & (wanted == 1.0)] = 2.0
     # Reading calls longer steps a gap, and a command table is to be read again.
     over = demand.step / (longest_step(demand.t) * (1.0 + 1e-9))

@@ -68,6 +68,11 @@ METRICS: Mapping[MetricKey, Metric] = MappingProxyType(
 )
 """The measures by key, in the order in which they are reported."""
 
+UNFELT_ANGULAR_ACCELERATION = 0.01
+"""Total angular acceleration [rad/s^2] that is taken for nothing: about half a degree per
+second squared, at the threshold of the semicircular canals. Ratios of sizes are to this at
+the least, for no ride gets worse by a multiple of what nobody feels."""
+
 STUDY_METRIC: MetricKey = "joint_deviation_relative"
 """What a budget without a name is on: the study's measure."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -44,6 +45,17 @@ class Motion:
         freeze(self, "angle", (n, 3))
         freeze(self, "rate_start", (n - 1, 3))
         freeze(self, "rate_end", (n - 1, 3))
+
+    def with_joints(self, joints: Sequence[int], other: Motion) -> Motion:
+        """Return the motion with some joints moving as in another one of the same times."""
+        if not joints:
+            return self
+        columns = [self.angle.copy(), self.rate_start.copy(), self.rate_end.copy()]
+        for column, source in zip(
+            columns, (other.angle, other.rate_start, other.rate_end), strict=True
+        ):
+            column[:, joints] = source[:, joints]
+        return Motion(self.t, *columns)
 
     @cached_property
     def step(self) -> Floats:
@@ -140,6 +152,33 @@ class Shortfall:
             freeze(self, name, (n - 1, 2, 3))
 
 
+@dataclass(frozen=True, eq=False)
+class Record:
+    """What is asked of the machine.
+
+    Parameters
+    ----------
+    motion : Motion
+    shortfall : Shortfall, optional
+        What is asked for beyond it.
+    """
+
+    motion: Motion
+    shortfall: Shortfall | None = None
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether it is the very same motion and shortfall."""
+        return (
+            isinstance(other, Record)
+            and self.motion is other.motion
+            and self.shortfall is other.shortfall
+        )
+
+    def __hash__(self) -> int:
+        """Return a hash of what makes it the same."""
+        return hash((id(self.motion), id(self.shortfall)))
+
+
 @dataclass(frozen=True)
 class DesiredMotion:
     """The motion that a profile asks for, and how well the joints can make it.
@@ -179,6 +218,11 @@ class DesiredMotion:
     shortfall: Shortfall | None = None
     rates: BodyRates | None = None
     remarks: tuple[str, ...] = ()
+
+    @property
+    def record(self) -> Record:
+        """What is asked for, as fidelity is measured against it."""
+        return Record(self.motion, self.shortfall)
 
 
 def mean_of_sides(sides: Floats) -> Floats:

@@ -229,6 +229,15 @@ class Reduction:
         freeze(self, "r2", (3,))
         freeze(self, "tracking", (3,))
 
+    @property
+    def budget_of_record(self) -> tuple[Budget, ...]:
+        """The budgets on the whole way from the record: none where a change is allowed."""
+        return self.budget if self.allow_change is None else ()
+
+
+Command: TypeAlias = JointCommands | BodyRates | GCommand
+"""What a profile asks for."""
+
 
 @dataclass(frozen=True)
 class Profile:
@@ -256,7 +265,7 @@ class Profile:
 
     name: str
     t: Floats
-    command: JointCommands | BodyRates | GCommand
+    command: Command
     machine: Machine
     seat: Seat = field(default_factory=Seat)
     initial_angle: Floats = field(default_factory=lambda: np.zeros(3))

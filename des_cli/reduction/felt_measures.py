@@ -12,6 +12,7 @@ import numpy as np
 from des_cli.kinematics.coriolis import coriolis, coriolis_derivatives
 from des_cli.kinematics.seat import PILOT_SIGNS
 from des_cli.model.arrays import Floats
+from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION
 from des_cli.model.motion import Shortfall
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.program import Expansion, Measure, Rows
@@ -200,6 +201,8 @@ class SeatAccelerationSize(SeatAccelerationDeviation):
     def __init__(self, grid: Transcription, budget: float) -> None:
         super().__init__(grid, budget, relative=True)
         self.target = np.zeros_like(self.target)
+        least = UNFELT_ANGULAR_ACCELERATION**2 * float(2.0 * np.sum(self.half))
+        self.weight = np.minimum(self.weight, self.half / (budget**2 * least))
 
 
 class SeatAccelerationRows(Rows):
@@ -217,7 +220,7 @@ class SeatAccelerationRows(Rows):
         self.vectors = SeatAccelerationSize(grid, 1.0)
         reference = SeatAccelerationDeviation(grid, 1.0, relative=False).target
         peak = float(np.max(np.sum(reference**2, axis=2)))
-        self.scale = 1.0 / (most**2 * max(peak, 1e-300))
+        self.scale = 1.0 / (most**2 * max(peak, UNFELT_ANGULAR_ACCELERATION**2))
 
     def value(self, x: Floats) -> Floats:
         """Return the squares over their bound, (n - 1, 2)."""

@@ -8,7 +8,7 @@ from des_cli.kinematics.attitude import geodesic_angle, rotation
 from des_cli.kinematics.chain import Chain, seat_rotation
 from des_cli.kinematics.response import respond_on, with_shortfall
 from des_cli.model.arrays import Floats
-from des_cli.model.metric import MetricKey
+from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION, MetricKey
 from des_cli.model.motion import Motion, Shortfall, integrate_sides
 from des_cli.model.response import Response
 
@@ -88,12 +88,12 @@ class Deviation:
                 return self._rms(self._turning_error)
             case "seat_angular_acceleration_rms_ratio":
                 before, after = (self._rms(turning) for turning in self._turning)
-                return after / max(before, 1e-150)
+                return after / max(before, UNFELT_ANGULAR_ACCELERATION)
             case "seat_angular_acceleration_peak_ratio":
                 before, after = (
                     float(np.max(np.linalg.norm(turning, axis=-1))) for turning in self._turning
                 )
-                return after / max(before, 1e-150)
+                return after / max(before, UNFELT_ANGULAR_ACCELERATION)
             case "attitude_error_max_deg":
                 one, other = (
                     seat_rotation(chain, motion.angle)

@@ -18,7 +18,7 @@ import numpy as np
 from des_cli.kinematics.chain import Chain, chain_of
 from des_cli.model.arrays import Flags, Floats, freeze
 from des_cli.model.machine import JOINTS, Machine
-from des_cli.model.motion import DesiredMotion, Motion, Shortfall
+from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Axes, Control, Ends, JacobianAt, Profile
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
@@ -98,14 +98,14 @@ def control_weight(control: Control, r2: Floats) -> Floats:
     return np.array([r2.mean()]) if control == "scalar" else r2 / 3.0
 
 
-def pose_problem(profile: Profile, desired: Motion, asked: DesiredMotion | None = None) -> Problem:
+def pose_problem(profile: Profile, desired: Motion, asked: Record | None = None) -> Problem:
     """Make the problem that a profile asks for along a desired motion.
 
     Parameters
     ----------
     profile : Profile
     desired : Motion
-    asked : DesiredMotion, optional
+    asked : Record, optional
         What budgets are measured against, where it is not ``desired``.
     """
     wanted = profile.reduction

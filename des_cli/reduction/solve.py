@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from des_cli.kinematics.chain import chain_of
 from des_cli.model.machine import Seat
 from des_cli.model.metric import Budget
-from des_cli.model.motion import DesiredMotion, Motion
+from des_cli.model.motion import DesiredMotion, Motion, Record
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution, Status
 from des_cli.model.stage import OnStage, untold
@@ -42,7 +43,10 @@ class Found:
         weights. None for a free motion, which solves another.
     solution : Solution
     budgets : tuple of Budget
-        As they were kept: those of the profile, or what is added to an allowed change.
+        What the reduction may add to ``held``: those of the profile, or what smoothing
+        leaves of them.
+    held : Record
+        What the budgets were kept against: the record, or what an allowed change made of it.
     """
 
     desired: Motion
@@ -51,12 +55,13 @@ class Found:
     posed: Problem | None
     solution: Solution
     budgets: tuple[Budget, ...]
+    held: Record
 
 
 def find_motion(
     profile: Profile,
     asked: DesiredMotion,
-    target: Motion,
+    target: DesiredMotion,
     report: Report | None = None,
     on_stage: OnStage = untold,
 ) -> Found:
@@ -68,32 +73,55 @@ def find_motion(
         Consistent (``consistency.require_consistent``).
     asked : DesiredMotion
         What the profile asks for: the record.
-    target : Motion
-        What the motion begins from: the same, or what conditioning made of it.
+    target : DesiredMotion
+        What the motion begins from: the very same, or what conditioning made of it.
     report : callable, optional
         Called with each line of the solver's log.
     on_stage : callable, optional
         Called with what is done next.
     """
-    reduction = profile.reduction
     on_stage("motion inside the limits")
-    if moves_freely(reduction):
-        task = FreeTask.of(profile, asked.motion, target, asked.shortfall)
-        free = find_free_motion(task, report, on_stage)
-        problem = pose_problem(profile, free.desired)
-        return Found(free.desired, free.seat, problem, None, free.solution, free.budgets)
-    desired, trouble = executable_motion(profile, target)
-    problem = pose_problem(profile, desired, asked)
-    change = Change.between(asked.motion, desired, problem.chain, problem.gravity, asked.shortfall)
-    refusal = change.refusal(reduction)
+    reduction, overspent = profile.reduction, ""
+    record, held = asked.record, target.record
+    free = moves_freely(reduction)
+    if target is not asked:
+        chain = chain_of(profile.machine, profile.seat)
+        smoothing = Change.between(record, held, chain, profile.machine.gravity)
+        left, overspent = smoothing.left(reduction, measured=free)
+        profile = replace(profile, reduction=replace(reduction, budget=left))
+    if overspent or not free:
+        return _of_factors(profile, record, held, overspent, report, on_stage)
+    task = FreeTask.of(profile, held.motion, held.shortfall)
+    if target is not asked:
+        task = replace(task, record=record, most=reduction.budget_of_record)
+    best = find_free_motion(task, report, on_stage)
+    problem = pose_problem(profile, best.desired)
+    return Found(best.desired, best.seat, problem, None, best.solution, best.budgets, best.held)
+
+
+def _of_factors(
+    profile: Profile,
+    record: Record,
+    held: Record,
+    overspent: str,
+    report: Report | None,
+    on_stage: OnStage,
+) -> Found:
+    """Find factors on the desired rates, or say what stands against looking for any."""
+    reduction, chain = profile.reduction, chain_of(profile.machine, profile.seat)
+    desired, trouble = executable_motion(profile, held.motion)
+    change = Change.between(record, Record(desired), chain, profile.machine.gravity)
+    refusal = overspent or change.refusal(reduction)
+    if reduction.allow_change is not None and not change.nothing:
+        held = Record(desired)
+    problem = pose_problem(profile, desired, held)
     if trouble or refusal:
         status: Status = "infeasible" if trouble else "changed"
         solution = not_attempted(problem, trouble or refusal, status)
-        return Found(desired, profile.seat, problem, problem, solution, reduction.budget)
+        return Found(desired, profile.seat, problem, problem, solution, reduction.budget, held)
     on_stage("factors on the desired rates")
-    budgets = change.widened(reduction)
-    posed, solution = solve(problem, replace(reduction, budget=budgets), report)
-    return Found(desired, profile.seat, problem, posed, solution, budgets)
+    posed, solution = solve(problem, reduction, report)
+    return Found(desired, profile.seat, problem, posed, solution, reduction.budget, held)
 
 
 def moves_freely(reduction: Reduction) -> bool:

@@ -49,9 +49,10 @@ def spent_budgets(metrics: Mapping[str, Any]) -> list[Spent]:
     G error 0.05 of 0.05 g
     """
     found = []
+    of = "added.budgets" if section(metrics, "added") else "fidelity"
     for key in section(metrics, "solver.budget"):
         most = number(section(metrics, "solver.budget"), key)
-        spent = number(section(metrics, "fidelity"), key)
+        spent = number(section(metrics, of), key)
         if most is None or spent is None:
             continue
         metric = next((each for each in METRICS.values() if each.key == key), None)

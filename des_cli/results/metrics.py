@@ -11,7 +11,7 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Seat
 from des_cli.model.metric import METRICS
-from des_cli.model.motion import DesiredMotion, Motion, integrate_sides
+from des_cli.model.motion import DesiredMotion, Motion, Record, integrate_sides
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
 from des_cli.model.run import Violation
@@ -31,13 +31,15 @@ class Measured:
 
     ``before`` and ``after`` are the responses of the motion that the profile asks
     for, the record, and of the modified one; ``target`` is what conditioning made of
-    it, and ``desired`` the executable motion that the solver started from.
+    it, ``desired`` the executable motion that the solver started from, and ``held`` what
+    budgets hold against.
     """
 
     profile: Profile
     asked: DesiredMotion
     target: Motion
     desired: Motion
+    held: Record
     seat: Seat
     solution: Solution
     before: Response
@@ -56,6 +58,7 @@ def measure(run: Measured) -> dict[str, Any]:
         "coriolis": coriolis_metrics(run.asked.motion.step, run.before, run.after)
         | {"objective": {"reduction": run.baselines.reduction}},
         "fidelity": fidelity_metrics(run),
+        "added": added_metrics(run),
         "felt": felt_metrics(run.asked.motion, run.before, run.after),
         "changes": condition_metrics(run.profile, run.asked, run.target),
         "executable": executable_metrics(run.profile, run.target, run.desired),
@@ -158,6 +161,32 @@ def fidelity_metrics(run: Measured) -> dict[str, Any]:
         "end_error_rad": _by_joint(modified.angle[-1] - record.angle[-1]),
         "end_error_rad_s": _by_joint(modified.rate_end[-1] - record.rate_end[-1]),
         **tilt_error(step, before.seat_g, after.seat_g),
+    }
+
+
+def added_metrics(run: Measured) -> dict[str, Any] | None:
+    """Return what the reduction adds to what was changed of the record, and to its ride.
+
+    None where nothing was changed: then ``fidelity`` and ``felt`` tell all of it.
+    """
+    if run.held == run.asked.record:
+        return None
+    machine, held = run.profile.machine, run.held
+    chains = (chain_of(machine, run.profile.seat), chain_of(machine, run.seat))
+    deviation = Deviation.between(
+        held.motion,
+        run.solution.modified,
+        chains,
+        machine.gravity,
+        run.solution.control,
+        held.shortfall,
+    )
+    return {
+        "budgets": {
+            budget.metric: _number(deviation.value(budget.metric))
+            for budget in run.profile.reduction.budget
+        },
+        "felt": felt_metrics(held.motion, deviation.before, run.after),
     }
 
 

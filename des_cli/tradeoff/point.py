@@ -111,7 +111,7 @@ def baseline_points(profile: Profile, weights: Sequence[float] = ()) -> list[Tra
         budget=(),
     )
     profile = replace(profile, reduction=wanted)
-    problem = pose_problem(profile, desired, asked)
+    problem = pose_problem(profile, desired, asked.record)
     points = []
     for r2 in weights or (_weight(wanted.r2),):
         weighed = replace(problem, r2=np.array([r2]))
@@ -225,6 +225,7 @@ def _measure(
                 asked=asked,
                 target=asked.motion,
                 desired=problem.desired,
+                held=asked.record,
                 seat=profile.seat,
                 solution=solution,
                 before=before,

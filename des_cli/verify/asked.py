@@ -8,11 +8,11 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import Shortfall
-from des_cli.model.profile import BodyRates, GCommand, Profile
+from des_cli.model.profile import BodyRates, Command, GCommand
 from des_cli.verify.felt import Felt
 
 
-def as_asked(felt: Felt, profile: Profile, missing: Shortfall | None) -> Felt:
+def as_asked(felt: Felt, command: Command | None, missing: Shortfall | None) -> Felt:
     """Return what is felt of a joint motion with what was asked for beyond it.
 
     Recorded rates and an asked G are taken from the profile itself, whatever became of them.
@@ -21,13 +21,14 @@ def as_asked(felt: Felt, profile: Profile, missing: Shortfall | None) -> Felt:
     ----------
     felt : Felt
         Of the joint motion that the profile asks for, at the states of `SeatChain.along`.
-    profile : Profile
+    command : Command, optional
+        Of the profile; without it the shortfall tells all.
     missing : Shortfall or None
     """
     if missing is None:
         return felt
     turning = felt.turning + _states(missing.seat_angular_acceleration)
-    command, rate = profile.command, felt.rate + _states(missing.seat_rate)
+    rate = felt.rate + _states(missing.seat_rate)
     g = felt.g + _states(missing.seat_g)
     if isinstance(command, BodyRates):
         rate = np.concatenate([command.start, command.end]).T

@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.metric import Budget
+from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION, Budget
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.verify.claim import Claim
@@ -28,6 +28,9 @@ a budget may seem to be left."""
 TORN = 0.05
 """Largest difference of a mean rate by positions from that by rates, over the joint's
 largest rate, that a quadrature makes; more is a jump."""
+
+RATIOS = frozenset({"seat_angular_acceleration_rms_ratio", "seat_angular_acceleration_peak_ratio"})
+"""Metrics that compare a ride with what was reduced: the noise of a record has no bearing."""
 
 NOTHING = 1e-300
 """Least square of a norm to divide by."""
@@ -73,16 +76,29 @@ AT_SAMPLES = frozenset({"attitude_error_max_deg", "seat_angular_acceleration_pea
 
 
 def check_budgets(claim: Claim) -> list[Check]:
-    """Measure what the modified motion spends of every budget."""
-    return [
+    """Measure what the reduction spends of every budget, and all that is off of the record."""
+    reduced = claim.reduced
+    checks = [
         Check(
             f"budget.{budget.metric}",
             f"excess over the budget on {budget.metric}",
-            measure(claim, budget.metric, claim.after) / budget.most - 1.0,
+            measure(reduced, budget.metric, claim.after) / budget.most - 1.0,
             BUDGET_TOLERANCE,
         )
         for budget in claim.reduction.budget
     ]
+    if reduced is not claim:
+        checks += [
+            Check(
+                f"record.{budget.metric}",
+                f"excess over what is allowed of {budget.metric} from the record",
+                measure(claim, budget.metric, claim.after) / budget.most - 1.0,
+                BUDGET_TOLERANCE,
+            )
+            for budget in claim.most
+            if budget.metric not in RATIOS
+        ]
+    return checks
 
 
 def keeps_budgets(claim: Claim, felt: Felt) -> bool:
@@ -137,7 +153,8 @@ def size(claim: Claim, metric: str) -> float:
     if not integral.relative:
         return claim.duration
     values = getattr(claim.before, integral.field)
-    return max(float(claim.weight @ np.sum(values**2, axis=0)), NOTHING)
+    least = NOTHING if integral.deviation else UNFELT_ANGULAR_ACCELERATION**2 * claim.duration
+    return max(float(claim.weight @ np.sum(values**2, axis=0)), least)
 
 
 def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
@@ -146,7 +163,7 @@ def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
         chord = np.sqrt(np.sum((felt.rotation - claim.before.rotation) ** 2, axis=(0, 1)) / 8.0)
         return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(chord, 1.0))))
     before, after = (np.sqrt(np.sum(each.turning**2, axis=0)) for each in (claim.before, felt))
-    return np.asarray(after / max(float(np.max(before)), NOTHING))
+    return np.asarray(after / max(float(np.max(before)), UNFELT_ANGULAR_ACCELERATION))
 
 
 def mean_square_one_minus_p(claim: Claim, control: Floats) -> float:

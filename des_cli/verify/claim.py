@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
-from des_cli.model.motion import Motion, Shortfall
+from des_cli.model.metric import Budget
+from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
@@ -45,6 +46,12 @@ class Claim:
         What conditioning made of the motion asked for, where it did.
     shortfall : Shortfall, optional
         What is asked for beyond the motion asked for.
+    held : Record, optional
+        What the reduction's budgets hold against, where that is not the record.
+    most : tuple of Budget
+        What the profile allows of the whole way from the record, where it does.
+    from_profile : bool
+        Whether what is asked for is the profile's own record.
     """
 
     profile: Profile
@@ -56,6 +63,18 @@ class Claim:
     commands: Motion | None = None
     target: Motion | None = None
     shortfall: Shortfall | None = None
+    held: Record | None = None
+    most: tuple[Budget, ...] = ()
+    from_profile: bool = True
+
+    @cached_property
+    def reduced(self) -> Claim:
+        """The claim on what was reduced: budgets and optimality are round that motion."""
+        if self.held is None or self.held == Record(self.asked, self.shortfall):
+            return self
+        return replace(
+            self, asked=self.held.motion, shortfall=self.held.shortfall, from_profile=False
+        )
 
     @property
     def reduction(self) -> Reduction:
@@ -111,7 +130,8 @@ class Claim:
     def before(self) -> Felt:
         """What is asked for at all states."""
         made = self.chain_before.along(self.asked)
-        return as_asked(made, self.profile, self.shortfall)
+        command = self.profile.command if self.from_profile else None
+        return as_asked(made, command, self.shortfall)
 
     @cached_property
     def executable(self) -> Felt:

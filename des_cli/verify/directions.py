@@ -20,7 +20,7 @@ from des_cli.verify.budgets import AT_SAMPLES, at_states
 from des_cli.verify.claim import Claim
 from des_cli.verify.ends import STANDSTILL
 from des_cli.verify.limits import magnitudes
-from des_cli.verify.occupant import excesses
+from des_cli.verify.occupant import excesses, steepness
 
 TIGHT = 1e-2
 """Distance from a limit, relative, within which it may hold the motion. A limit acts on
@@ -149,8 +149,12 @@ def _free(claim: Claim) -> Flags:
         for quantity, values in magnitudes(claim.modified).items():
             bound = np.array([getattr(limit, quantity) for limit in claim.profile.machine.limits])
             free &= values < (1.0 - TIGHT) * bound
-        for _, _, excess in excesses(claim.profile.machine.occupant, claim.modified, claim.after):
+        occupant = claim.profile.machine.occupant
+        for _, _, excess in excesses(occupant, claim.modified, claim.after):
             free &= _at_samples(excess < -near)[:, None]
+        if np.isfinite(occupant.g_onset):
+            steep = steepness(occupant, claim.modified, claim.after)
+            free &= _at_samples(np.tile(steep < -near, 2))[:, None]
     for budget in claim.reduction.budget:
         if budget.metric in AT_SAMPLES:
             values = at_states(claim, budget.metric, claim.after)

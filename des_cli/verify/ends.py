@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Flags, Floats
 from des_cli.model.machine import JOINTS
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
@@ -31,13 +31,16 @@ def check_times(claim: Claim) -> Check:
 def check_integral(claim: Claim) -> Check:
     """Compare the angles of the table with the integrals of its rates.
 
-    Where the motion asked for is passed through its angles are its own.
+    Where the motion asked for is passed through, or a joint of it held, its angles are
+    its own.
     """
     motion, asked = claim.table, claim.asked
     rise = 0.5 * motion.step[:, None] * (motion.rate_start + motion.rate_end)
     off = np.abs(np.diff(motion.angle, axis=0) - rise)
+    inside = (motion.t[:-1] >= asked.t[0]) & (motion.t[1:] <= asked.t[-1])
     if _same_motion(claim.modified, asked):
-        off[(motion.t[:-1] >= asked.t[0]) & (motion.t[1:] <= asked.t[-1])] = 0.0
+        off[inside] = 0.0
+    off[np.ix_(inside, _held(claim))] = 0.0
     gap = np.max(off)
     size = max(1.0, float(np.max(np.abs(motion.angle))))
     return Check(
@@ -83,11 +86,21 @@ def check_ends(claim: Claim) -> list[Check]:
 
 def check_hold(claim: Claim) -> list[Check]:
     """Compare the joints that are held with the desired motion."""
-    held = [joint in claim.reduction.hold for joint in JOINTS]
-    if not any(held):
+    held = _held(claim)
+    if not np.any(held):
         return []
-    off = (claim.modified.angle - claim.desired.angle)[:, held]
-    return [_same("hold", "change of the angles of held joints [rad]", off)]
+    modified, desired = claim.modified, claim.desired
+    angle = (modified.angle - desired.angle)[:, held]
+    rate = (modified.rate_sides - desired.rate_sides)[..., held]
+    return [
+        _same("hold", "change of the angles of held joints [rad]", angle),
+        _same("hold.rate", "change of the rates of held joints [rad/s]", rate),
+    ]
+
+
+def _held(claim: Claim) -> Flags:
+    """Return which joints are to play the desired motion, (3,)."""
+    return np.array([joint in claim.reduction.hold for joint in JOINTS])
 
 
 def check_factors(claim: Claim) -> list[Check]:

@@ -62,9 +62,10 @@ def check_cost(claim: Claim) -> list[Check]:
         found = 0.5 * float(claim.weight @ _weighted(claim.reduction, felt))
         error = abs(told - found) / max(abs(found), least)
         checks.append(Check(key, name, error, COST_TOLERANCE))
-    if _desired_is_allowed(claim):
+    reduced = claim.reduced
+    if _desired_is_allowed(reduced):
         desired, modified = (
-            float(claim.weight @ _objective(claim.reduction, felt, claim.before))
+            float(claim.weight @ _objective(claim.reduction, felt, reduced.before))
             for felt in (claim.executable, claim.after)
         )
         rise = (modified - desired) / max(desired, least)

@@ -12,6 +12,12 @@ from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.verify.felt import Felt
 
+WINDOW = 0.1
+"""Time [s] over which a change of G is an onset; see the nomenclature."""
+
+BESIDE = 1e-9
+"""Share of an interval by which a jump at a sample is set apart."""
+
 OCCUPANT_TOLERANCE = 1e-9
 """Excess over a bound that rounding alone may make, relative to the bound or to one."""
 
@@ -54,18 +60,41 @@ def excesses(
             yield name, name.capitalize(), np.asarray(np.max(over, axis=0))
     if np.isfinite(bounds.g_onset):
         onset = np.max(_onset(motion, felt), axis=0)
-        yield "onset", "G onset", (np.tile(onset, 2) - bounds.g_onset) / max(1.0, bounds.g_onset)
+        yield "onset", "G onset", (onset - bounds.g_onset) / max(1.0, bounds.g_onset)
     most = bounds.angular_acceleration
     if np.isfinite(most):
         size = np.sqrt(np.sum(felt.turning**2, axis=0))
         yield "angular_acceleration", "angular acceleration", (size - most) / max(1.0, most)
 
 
-def _onset(motion: Motion, felt: Felt) -> Floats:
-    """Return the change of G from sample to sample over the step, (3, n - 1) [g/s].
+def steepness(bounds: OccupantBounds, motion: Motion, felt: Felt) -> Floats:
+    """Return by how much G rises faster than its bound within each interval, (n - 1,).
 
-    At a sample counts what is felt after it: a jump there is then part of the change.
+    Relative as in `excesses`. It is not what is bounded, but a method may hold the slope
+    of G at every instant, and where it does nothing moves freely.
     """
     count = len(motion.step)
     samples = np.concatenate([felt.g[:, :count], felt.g[:, -1:]], axis=1)
-    return np.asarray(np.abs(np.diff(samples, axis=1)) / motion.step)
+    slope = np.max(np.abs(np.diff(samples, axis=1)) / motion.step, axis=0)
+    return np.asarray((slope - bounds.g_onset) / max(1.0, bounds.g_onset))
+
+
+def _onset(motion: Motion, felt: Felt) -> Floats:
+    """Return the change of G over ``WINDOW`` that begins or ends at each state, (3, m) [g/s].
+
+    Between the states G is a broken line that may jump at the samples; its change over a
+    fixed time is largest where the time begins or ends at a corner.
+    """
+    t, count = motion.t, len(motion.step)
+    window = min(WINDOW, float(t[-1] - t[0]))
+    times = np.concatenate([t[:-1], t[1:]])
+    order = np.stack([np.arange(count), np.arange(count) + count], axis=1).ravel()
+    corner = times[order] + np.tile([1.0, -1.0], count) * BESIDE * np.repeat(motion.step, 2)
+    onset = np.zeros_like(felt.g)
+    for component, line in zip(onset, felt.g[:, order], strict=True):
+        for shift in (window, -window):
+            other = corner + shift
+            inside = (other >= t[0]) & (other <= t[-1])
+            change = np.abs(np.interp(other, corner, line) - line) / window
+            component[order] = np.maximum(component[order], np.where(inside, change, 0.0))
+    return onset

@@ -80,7 +80,7 @@ def _of_free(claim: Claim) -> list[Check]:
         *_occupant(claim),
         *check_budgets(claim),
         *free.check_cost(claim),
-        *free.check_optimality(claim),
+        *free.check_optimality(claim.reduced),
     ]
 
 
@@ -95,7 +95,7 @@ def _of_factors(claim: Claim, problem: Problem) -> list[Check]:
     elif wanted.algorithm == "optimum":
         checks += check_budgets(claim)
         if problem.jacobian == "desired":
-            checks.append(check_optimality(claim, problem))
+            checks.append(check_optimality(claim.reduced, problem))
     return checks
 
 

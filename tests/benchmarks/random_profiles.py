@@ -116,7 +116,7 @@ def random_task(seed: int) -> FreeTask:
     ends = list(ENDS)[draw.choice(len(ENDS), p=list(ENDS.values()))]
     objective = list(OBJECTIVES)[draw.choice(len(OBJECTIVES), p=list(OBJECTIVES.values()))]
     reduction = Reduction(budget=budget, ends=ends, objective=objective)
-    return FreeTask(replace(DES, limits=limits), Seat(), reduction, motion, motion, limits)
+    return FreeTask(replace(DES, limits=limits), Seat(), reduction, motion, limits)
 
 
 @dataclass

@@ -38,6 +38,7 @@ def test_keep_going_runs_the_others(invoke, write_profile, tmp_path, jobs: str) 
     assert {path.name for path in (tmp_path / "runs").iterdir()} == {"first", "last"}
 
 
+@pytest.mark.slow
 def test_the_number_of_jobs_does_not_change_a_byte(command, write_profile, tmp_path) -> None:
     files = [write_profile(name).name for name in ("one", "two")]
     for jobs in ("1", "2"):

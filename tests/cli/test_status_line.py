@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import pty
 import re
 import subprocess
 import sys
@@ -163,6 +162,7 @@ OnTerminal = Callable[..., tuple[str, bytes]]
 @pytest.fixture
 def on_terminal(tmp_path: Path, python_environment: dict[str, str]) -> OnTerminal:
     """Run a command line whose stderr is a terminal, its line drawn at once."""
+    pty = pytest.importorskip("pty")
 
     def run(*args: str) -> tuple[str, bytes]:
         ours, theirs = pty.openpty()

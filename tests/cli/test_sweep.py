@@ -56,6 +56,7 @@ def test_every_format_holds_the_same_numbers(invoke, small: str, tmp_path) -> No
                 assert row[name] == ("" if value is None else str(value))
 
 
+@pytest.mark.slow
 def test_more_jobs_give_the_same_bytes(command, small: str) -> None:
     args = ("sweep", small, "--r2s", "2,1")
     one, two = (command(*args, "--jobs", jobs) for jobs in ("1", "2"))

@@ -146,3 +146,17 @@ def test_a_recorded_attitude_is_compared_at_the_recorded_rows() -> None:
     found = make_desired(profile_of(t, rates, attitude=recorded))
     assert found.recorded_attitude_error is not None
     assert found.recorded_attitude_error < 1e-6
+
+
+def test_rows_that_are_added_hold_the_angular_acceleration() -> None:
+    """Slow rates 10 s apart: what the table turns the seat by is theirs, not its steps'."""
+    t, rates = coarse()
+    profile = profile_of(t, rates)
+    motion = make_desired(profile).motion
+    rate = rates_between(profile, motion, np.array([0.0, 1.0]))
+    turning = (rate[:, 1] - rate[:, 0]) / motion.step[:, None]
+    exact = PchipInterpolator(t, rates)(0.5 * (motion.t[:-1] + motion.t[1:]), 1)
+    halves = rates_between(profile, motion, np.array([0.0, 0.05, 0.95, 1.0]))
+    begin = (halves[:, 1] - halves[:, 0]) / (0.05 * motion.step[:, None])
+    assert np.max(np.linalg.norm(turning - exact, axis=1)) < 1e-3
+    assert np.max(np.linalg.norm(begin - exact, axis=1)) < 0.01

@@ -17,6 +17,8 @@ from des_cli.reduction.search import Search
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.interior import minimise
 
+pytestmark = pytest.mark.slow
+
 OPTIONS = {
     "print_time": False,
     "ipopt.print_level": 0,

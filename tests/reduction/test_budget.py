@@ -18,6 +18,8 @@ from des_cli.reduction.limits import find_violations
 from des_cli.reduction.search import Search
 from des_cli.solver.interior import minimise
 
+pytestmark = pytest.mark.slow
+
 JOINTS, G = "joint_deviation_relative", "seat_g_rms_error_g"
 ATTITUDE = "attitude_error_max_deg"
 

@@ -9,7 +9,7 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
-from des_cli.model.motion import Motion, Shortfall
+from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Reduction
 from des_cli.reduction.change import Change
 
@@ -27,7 +27,8 @@ def motion_of(scale=1.0):
 def change_of(scale, shortfall=None):
     record = motion_of()
     motion = record if scale == 1.0 else motion_of(scale)
-    return Change.between(record, motion, chain_of(DES, Seat()), DES.gravity, shortfall)
+    chain = chain_of(DES, Seat())
+    return Change.between(Record(record, shortfall), Record(motion), chain, DES.gravity)
 
 
 def closed_form(scale):
@@ -43,7 +44,7 @@ def test_the_record_itself_is_no_change():
     change = change_of(1.0)
     assert change.nothing
     assert change.refusal(Reduction()) == ""
-    assert change.widened(Reduction(allow_change=0.5)) == Reduction().budget
+    assert change.left(Reduction()) == (Reduction().budget, "")
 
 
 def test_a_change_is_told_and_refused_beyond_what_is_allowed():
@@ -74,16 +75,38 @@ def test_what_the_joints_do_not_make_is_a_change_too():
     assert change.refusal(Reduction()) != ""
 
 
-def test_budgets_beside_an_allowed_change_are_what_is_added():
-    change = change_of(1.5)
+def test_an_allowed_change_leaves_budgets_as_what_is_added():
     reduction = Reduction(allow_change=0.5)
-    widened = {b.metric: b.most for b in change.widened(reduction)}
-    for budget in reduction.budget:
-        value = change.deviation.value(budget.metric)
-        if budget.metric in (RATE, G):
-            assert widened[budget.metric] ** 2 == pytest.approx(value**2 + budget.most**2)
-        else:
-            assert widened[budget.metric] == pytest.approx(budget.most * value)
-    seen = {b.metric: b.most for b in change.widened(reduction, {RATE: 0.7})}
-    assert seen[RATE] == pytest.approx(np.hypot(0.7, 0.1))
-    assert change.widened(Reduction()) == Reduction().budget
+    assert change_of(1.5).left(reduction) == (reduction.budget, "")
+
+
+def test_what_a_change_leaves_of_budgets():
+    change = change_of(1.05)
+    off, force = change.deviation.value(RATE), change.deviation.value(G)
+    safe, trouble = change.left(Reduction())
+    assert trouble == ""
+    left = {b.metric: b.most for b in safe}
+    assert left[G] == pytest.approx(0.05 - force)
+    assert left[RATE] == pytest.approx((0.1 - off) / (1.0 + off))
+    ratios = {b.metric: b.most for b in Reduction().budget if b.metric not in (RATE, G)}
+    assert {metric: left[metric] for metric in ratios} == ratios
+    measured = {b.metric: b.most for b in change.left(Reduction(), measured=True)[0]}
+    assert np.hypot(measured[G], force) == pytest.approx(0.05)
+
+
+def test_a_squared_budget_is_left_by_its_root():
+    squared = "joint_deviation_relative_squared"
+    change = change_of(1.05)
+    spent = np.sqrt(change.deviation.value(squared))
+    (left,), _ = change.left(Reduction(budget=(Budget(squared, 0.01),)))
+    assert np.sqrt(left.most) * (1.0 + spent) + spent == pytest.approx(0.1)
+
+
+def test_what_is_overspent_is_told_with_the_share_to_allow():
+    change = change_of(1.5)
+    budgets, told = change.left(Reduction(budget=(Budget(G, 1e-4), Budget(RATE, 0.9))))
+    assert budgets == (Budget(G, 1e-4), Budget(RATE, 0.9))
+    assert told.startswith(
+        f"smoothing alone spends G error {change.deviation.value(G):.3g} of 0.0001;"
+    )
+    assert f"--allow-change {np.ceil(100 * closed_form(1.5)) / 100:g} " in told

@@ -13,6 +13,8 @@ from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.limits import find_violations
 from des_cli.reduction.report_sweep import sweep
 
+pytestmark = pytest.mark.slow
+
 RATES = st.lists(st.lists(st.floats(-1.5, 1.5), min_size=3, max_size=3), min_size=3, max_size=3)
 
 

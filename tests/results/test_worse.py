@@ -131,3 +131,24 @@ def test_a_start_that_was_to_be_found_is_not_off() -> None:
 @pytest.mark.parametrize("metrics", [{}, {"felt": 1, "fidelity": []}, {"felt": {"seat_g": None}}])
 def test_what_is_not_known_is_not_told(metrics: dict[str, Any]) -> None:
     assert find_worse(metrics) == []
+
+
+def test_a_ride_is_compared_with_the_one_that_was_reduced() -> None:
+    """A noisy record turns more than any ride that is made of it."""
+    noisy = changed(felt__seat_g__gx__onset_before_g_s=46.0, felt__seat_g__gx__onset_after_g_s=1.4)
+    assert find_worse(noisy) == []
+    smooth = changed(felt__seat_g__gx__onset_after_g_s=1.4)["felt"]
+    (told,) = find_worse({**noisy, "added": {"felt": smooth}})
+    assert str(told) == "Gx onset 1 -> 1.4 g/s"
+
+
+def test_no_bound_is_named_that_the_profile_itself_exceeds() -> None:
+    grown = {"felt__seat_g__gx__onset_after_g_s": 1.4}
+    (told,) = find_worse(changed(**grown))
+    assert told.cure == "the machine's g_onset_g_s"
+    (told,) = find_worse(
+        changed(
+            felt__seat_g__gz__onset_before_g_s=2.0, felt__seat_g__gz__onset_after_g_s=2.0, **grown
+        )
+    )
+    assert told.cure == "a smaller budget on seat_g_rms_error_g"

@@ -103,6 +103,7 @@ def test_an_interruption_leaves_everything_as_it_was(
         assert target.read_bytes() == b"old"
 
 
+@pytest.mark.skipif(os.name == "nt", reason="no SIGKILL on Windows")
 @pytest.mark.parametrize("kill_at", [1, 2])
 def test_a_killed_process_leaves_no_half_file(
     tmp_path: Path, python_environment: dict[str, str], kill_at: int
@@ -132,6 +133,7 @@ write_file("x.csv", b"0123456789" * 100_000)
     assert all(atomic.is_temporary(name) for name in names(tmp_path) if name != "x.csv")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="no permissions of POSIX on Windows")
 def test_permissions_are_those_of_the_umask_and_of_the_file_replaced(tmp_path: Path) -> None:
     target = tmp_path / "x.csv"
     mask = os.umask(0o027)

@@ -50,7 +50,7 @@ def task_of(
     budgets = tuple(Budget(metric, most) for metric, most in budget.items())  # type: ignore[arg-type]
     asked = Reduction(budget=budgets, **reduction)
     limits = machine.limits if asked.limits == "enforce" else unlimited()
-    return FreeTask(machine, seat or Seat(), asked, motion, motion, limits)
+    return FreeTask(machine, seat or Seat(), asked, motion, limits)
 
 
 def fit(task: FreeTask, intervals: int) -> ExecutableSpline:

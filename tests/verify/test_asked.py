@@ -27,7 +27,7 @@ def case():
 
 def test_recorded_rates_are_the_profiles_own():
     felt, profile, shortfall = case()
-    asked = as_asked(felt, profile, shortfall)
+    asked = as_asked(felt, profile.command, shortfall)
     command = profile.command
     assert isinstance(command, BodyRates)
     np.testing.assert_array_equal(asked.rate[:, :10].T, command.start)
@@ -36,7 +36,7 @@ def test_recorded_rates_are_the_profiles_own():
 
 def test_the_rest_is_what_is_made_and_what_is_missing():
     felt, profile, shortfall = case()
-    asked = as_asked(felt, profile, shortfall)
+    asked = as_asked(felt, profile.command, shortfall)
     for field, sides in (
         ("g", shortfall.seat_g),
         ("turning", shortfall.seat_angular_acceleration),
@@ -53,4 +53,4 @@ def test_the_rest_is_what_is_made_and_what_is_missing():
 
 def test_nothing_missing_is_the_motion_itself():
     felt, profile, _ = case()
-    assert as_asked(felt, profile, None) is felt
+    assert as_asked(felt, profile.command, None) is felt

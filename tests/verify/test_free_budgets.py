@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.onset import largest_onset
 from des_cli.kinematics.response import respond_on
 from des_cli.model.machine import OccupantBounds
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
 from des_cli.model.motion import Motion
 from des_cli.reduction.fidelity import Deviation
+from des_cli.verify.occupant import excesses
 from tests.support.free_case import RATE, G, with_rates
 
 
@@ -72,8 +75,7 @@ def test_a_component_of_g_beyond_its_bound_at_one_sample(case, key, side):
 def test_onset_and_angular_acceleration_beyond_their_bounds(case):
     motion = case.solution.modified
     response = respond_on(chain_of(DES, case.seat), DES.gravity, motion)
-    samples = np.vstack([response.seat_g[:, 0], response.seat_g[-1:, 1]])
-    onset = float(np.max(np.abs(np.diff(samples, axis=0)) / motion.step[:, None]))
+    onset = float(np.max(largest_onset(motion.t, response.seat_g)))
     turning = float(np.max(np.linalg.norm(response.seat_angular_acceleration, axis=-1)))
     for share, broken in ((1.0 + 1e-6, False), (1.0 - 1e-6, True)):
         for key, bounds in (
@@ -121,3 +123,18 @@ def test_a_table_with_a_lead(case):
 def replace_end(motion):
     """The motion without its last interval."""
     return Motion(motion.t[:-1], motion.angle[:-1], motion.rate_start[:-1], motion.rate_end[:-1])
+
+
+def test_onset_is_over_a_tenth_of_a_second_whatever_the_steps():
+    # a ramp of 3 g/s, with a step of 0.01 g at a sample beside which another is very near
+    t = np.array([0.0, 0.1, 0.2, 0.20001, 0.3, 0.4])
+    motion = with_rates(t, np.zeros(3), np.zeros((6, 3)))
+    g = np.zeros((3, 2 * 5))
+    g[2] = 3.0 * np.concatenate([t[:-1], t[1:]])
+    g[2, 3:5] += 0.01
+    g[2, 7:] += 0.01
+    felt = SimpleNamespace(g=g, turning=np.zeros((3, 10)))
+    ((key, _, excess),) = excesses(OccupantBounds(g_onset=1.0), motion, felt)
+    assert key == "onset"
+    assert np.max(excess) == pytest.approx(3.1 - 1.0, abs=1e-6)
+    assert np.min(excess) == pytest.approx(3.0 - 1.0, abs=1e-6)

@@ -13,9 +13,10 @@ from des_cli.kinematics.response import respond_on
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
 from des_cli.model.metric import METRICS, Budget, MetricKey
-from des_cli.model.motion import Motion, integrate_sides
+from des_cli.model.motion import Motion, Record, integrate_sides
 from des_cli.model.profile import Axes
 from des_cli.model.solution import Iteration, Solution, Status
+from des_cli.reduction.change import Change
 from des_cli.reduction.executable import ExecutableSpline, sample_spline
 from des_cli.reduction.free.problem import AT_POINTS, FreeTask, in_ground_axes
 from des_cli.reduction.free.program import MotionProgram
@@ -42,13 +43,15 @@ class FreeResult:
     seat : Seat
         As fixed in the modified motion.
     budgets : tuple of Budget
-        As they were kept.
+    held : Record
+        What the budgets were kept against.
     """
 
     desired: Motion
     solution: Solution
     seat: Seat
     budgets: tuple[Budget, ...]
+    held: Record
 
 
 @dataclass
@@ -111,7 +114,7 @@ class Answers:
             iterations=len(self.log.lines),
             log=tuple(self.log.lines),
         )
-        return FreeResult(desired, solution, self.task.seat, self.budgets)
+        return FreeResult(desired, solution, self.task.seat, self.budgets, self.task.held)
 
     def _result(
         self,
@@ -129,12 +132,12 @@ class Answers:
             modified=modified,
             adjoint=np.zeros((self._rows, 0)),
             cost=self._cost(modified, seat),
-            cost_unreduced=self._cost(self.task.reference, self.task.seat),
+            cost_unreduced=self._cost(self.task.recorded.motion, self.task.seat),
             optimality=optimality,
             iterations=len(self.log.lines),
             log=tuple(self.log.lines),
         )
-        return FreeResult(desired, solution, seat, self.budgets)
+        return FreeResult(desired, solution, seat, self.budgets, self.task.held)
 
     def _verdict(self, outcome: Outcome) -> tuple[Status, str]:
         steps = f"{len(self.log.lines)} steps in all"
@@ -197,9 +200,16 @@ class Answers:
                 f"{', '.join(over)}; smooth it, or allow more"
             )
         if over:
+            change = Change.between(
+                task.recorded,
+                Record(sample_spline(fit, task.reference.t)),
+                task.chain,
+                task.machine.gravity,
+            )
+            allow = f"--allow-change {change.enough:g}"
             return (
                 "conditioning and the machine's limits alone cost more than the budgets allow: "
-                f"{', '.join(over)}; smooth the motion, allow more, or let --allow-change make the "
+                f"{', '.join(over)}; smooth the motion, allow more, or let {allow} make the "
                 "budgets those of what is added"
             )
         desired = sample_spline(fit, task.reference.t)

@@ -21,13 +21,13 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.seat_turn import seat_turns
 from des_cli.kinematics.twist import seat_forms
 from des_cli.model.arrays import Floats
-from des_cli.model.machine import Seat
+from des_cli.model.machine import JOINTS, Seat
 from des_cli.model.metric import Budget, MetricKey
-from des_cli.model.motion import Motion
+from des_cli.model.motion import Motion, Record
 from des_cli.model.profile import Reduction
 from des_cli.model.solution import Iteration
 from des_cli.model.stage import OnStage, untold
-from des_cli.reduction.change import Change
+from des_cli.reduction.change import UNSPENT, Change
 from des_cli.reduction.executable import (
     ExecutableSpline,
     fit_for_table,
@@ -155,9 +155,10 @@ class _Search:
         change = self._change(desired)
         if refusal := change.refusal(self.task.reduction):
             return self.answers.refused(desired, refusal, "changed")
-        between = {} if change.nothing else self._between(finest)
-        self.task = self._with_budgets(change.widened(self.task.reduction, between))
-        self.answers = Answers(self.task, self.log)
+        if self.task.reduction.allow_change is not None and not change.nothing:
+            desired = sample_spline(finest, self.t)
+            self.task = self.task.around(desired)
+            self.answers = Answers(self.task, self.log)
         fits = [*(fit for fit in coarse if not fit.trouble), finest]
         energy = cross_coupling(self.task, finest.grid)
         if energy <= NOTHING * finest.grid.duration:
@@ -194,23 +195,14 @@ class _Search:
     def _desired(self, fit: ExecutableSpline) -> Motion:
         """Return what the motion begins from, or its executable replacement if it needs one."""
         enforced = self.task.reduction.limits == "enforce"
-        if not enforced or not find_violations(self.task.machine, self.task.target, "desired"):
-            return self.task.target
+        if not enforced or not find_violations(self.task.machine, self.task.reference, "desired"):
+            return self.task.reference
         return sample_spline(fit, self.t)
 
     def _change(self, desired: Motion) -> Change:
         """Measure what was changed of the record already."""
         task = self.task
-        return Change.between(
-            task.reference, desired, task.chain, task.machine.gravity, task.shortfall
-        )
-
-    def _between(self, fit: ExecutableSpline) -> dict[MetricKey, float]:
-        """Return what the fit spends of integral metrics, between the samples too."""
-        budgets = [b for b in self.task.reduction.budget if b.metric not in AT_POINTS]
-        program = self._program(fit, budgets)
-        values = program.values(np.zeros(program.size)).budgets
-        return {b.metric: float(np.sqrt(v)) * b.most for b, v in zip(budgets, values, strict=True)}
+        return Change.between(task.recorded, Record(desired), task.chain, task.machine.gravity)
 
     def _grids(self) -> list[SplineGrid]:
         """Return the grids to solve on, the last one that of the result."""
@@ -228,7 +220,7 @@ class _Search:
 
     def _fit(self, grid: SplineGrid) -> ExecutableSpline:
         task = self.task
-        fit, limits = fit_for_table(grid, self.t, task.target, task.limits, task.base_ends)
+        fit, limits = fit_for_table(grid, self.t, task.reference, task.limits, task.base_ends)
         self.task = replace(task, limits=limits)
         return fit
 
@@ -324,7 +316,7 @@ class _Search:
         for attempt in range(SETTLINGS):
             self.on_stage("settling the table" + f", attempt {attempt + 1}" * (attempt > 0))
             program = self._program(fit, budgets)
-            modified, seat = self._table(program, fit, outcome.x)
+            modified, seat = self._table(program, fit, outcome.x, desired)
             deviation = Deviation.between(
                 self.task.reference,
                 modified,
@@ -333,6 +325,8 @@ class _Search:
                 shortfall=self.task.shortfall,
             )
             spent = {m: deviation.value(m) / most for m, most in allowed.items()}
+            for metric, share in self._spent_of_record(modified, seat).items():
+                spent[metric] = max(spent[metric], share)
             worst = max(spent.values(), default=TOUCHING)
             beyond = self._beyond(deviation, modified, seat)
             spends = worst >= LEFT or worst < BINDING or attempt >= GENEROUS
@@ -359,6 +353,24 @@ class _Search:
             outcome = self._minimise(program, inside, rough=False, warm=self.warm)
         return best or self.answers.refused(desired, self.answers.unkept(spent, beyond))
 
+    def _spent_of_record(self, modified: Motion, seat: Seat) -> dict[MetricKey, float]:
+        """Return what of the budgets against the record the whole way from it spends."""
+        task = self.task
+        if not task.most:
+            return {}
+        deviation = Deviation.between(
+            task.recorded.motion,
+            modified,
+            (task.chain, chain_of(task.machine, seat)),
+            task.machine.gravity,
+            shortfall=task.recorded.shortfall,
+        )
+        return {
+            budget.metric: deviation.value(budget.metric) / budget.most
+            for budget in task.most
+            if budget.metric not in UNSPENT
+        }
+
     def _beyond(self, deviation: Deviation, modified: Motion, seat: Seat) -> float:
         """Return by how much the table exceeds a bound on what the occupant gets, relative."""
         if self.task.reduction.limits != "enforce":
@@ -372,13 +384,15 @@ class _Search:
         return max(*excesses, LEAST_ROOM) if excesses else 0.0
 
     def _table(
-        self, program: MotionProgram, fit: ExecutableSpline, x: Floats
+        self, program: MotionProgram, fit: ExecutableSpline, x: Floats, desired: Motion
     ) -> tuple[Motion, Seat]:
+        """Return the motion of the table; a joint that is held plays the desired one's rows."""
         spline = ExecutableSpline(fit.grid, fit.control + program.control(x))
         seat = self.task.seat
         if program.free_angles:
             seat = turned_seat(self.task, program.seat_angles(x))
-        return sample_spline(spline, self.t), seat
+        held = [joint for joint, name in enumerate(JOINTS) if name in self.task.reduction.hold]
+        return sample_spline(spline, self.t).with_joints(held, desired), seat
 
 
 ROUGH_STEPS, STEPS = 120, 500

@@ -17,8 +17,8 @@ from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import SeatForms, SeatMotion, seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine, OccupantBounds, Seat
-from des_cli.model.metric import Budget, MetricKey
-from des_cli.model.motion import Motion, Shortfall
+from des_cli.model.metric import UNFELT_ANGULAR_ACCELERATION, Budget, MetricKey
+from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.response import Response
@@ -81,9 +81,8 @@ class FreeTask:
     seat : Seat
     reduction : Reduction
     reference : Motion
-        What fidelity is measured against.
-    target : Motion
-        What the motion begins from: the reference, or what conditioning made of it.
+        What the motion begins from and what budgets are measured against: the record, or
+        what conditioning made of it.
     limits : tuple of JointLimits
         That hold for the motion.
     room : float
@@ -92,27 +91,34 @@ class FreeTask:
         What is asked for beyond the reference.
     response : Response, optional
         As asked for, where it is known already.
+    record : Record, optional
+        What conditioning began from, where the reference is another motion.
+    most : tuple of Budget
+        What of fidelity to the record is allowed, where it counts beside the reference.
+    round_base : bool
+        Whether the reference is the table of the executable base itself.
     """
 
     machine: Machine
     seat: Seat
     reduction: Reduction
     reference: Motion
-    target: Motion
     limits: tuple[JointLimits, ...]
     room: float = 0.0
     shortfall: Shortfall | None = None
     response: Response | None = None
+    record: Record | None = None
+    most: tuple[Budget, ...] = ()
+    round_base: bool = False
 
     @classmethod
     def of(
         cls,
         profile: Profile,
         reference: Motion,
-        target: Motion | None = None,
         shortfall: Shortfall | None = None,
     ) -> FreeTask:
-        """Take what a profile asks for, and what the motion begins from."""
+        """Take what a profile asks for, or what conditioning made of it."""
         enforced = profile.reduction.limits == "enforce"
         limits = profile.machine.limits if enforced else unlimited()
         return cls(
@@ -120,7 +126,6 @@ class FreeTask:
             seat=profile.seat,
             reduction=profile.reduction,
             reference=reference,
-            target=reference if target is None else target,
             limits=limits,
             shortfall=shortfall,
         ).with_response()
@@ -134,7 +139,28 @@ class FreeTask:
 
     def rough(self, grid: SplineGrid) -> bool:
         """Return whether what is asked is faster than the knots of a grid."""
-        return is_rough(self.asked(), self.reference.t, grid.step)
+        return not self.round_base and is_rough(self.asked(), self.reference.t, grid.step)
+
+    @property
+    def held(self) -> Record:
+        """What budgets hold against."""
+        return Record(self.reference, self.shortfall)
+
+    @property
+    def recorded(self) -> Record:
+        """What the profile asks for."""
+        return self.record or self.held
+
+    def around(self, table: Motion) -> FreeTask:
+        """Return the task whose budgets hold against the executable base, of this table."""
+        return replace(
+            self,
+            reference=table,
+            shortfall=None,
+            response=None,
+            record=self.recorded,
+            round_base=True,
+        ).with_response()
 
     def with_response(self) -> FreeTask:
         """Return the task with what it would evaluate for every grid."""
@@ -190,7 +216,11 @@ def pose_motion(
     forms = seat_forms(task.chain, task.machine.gravity)
     windows = Windows(grid, SEAT_VARIABLES)
     times = windows.times()
-    angle, rate, acceleration = sample_motion(task.reference, times)
+    angle, rate, acceleration = (
+        (grid.values(base, times, order) for order in range(3))
+        if task.round_base
+        else sample_motion(task.reference, times)
+    )
     seat = forms.at(np.concatenate([angle[:, 1:].T, rate.T, acceleration.T]))
     asked = _asked(seat, task, windows)
     # Of a rough record no motion makes the cross-coupling: costs are relative to the base's.
@@ -310,7 +340,9 @@ class _Measures:
             case "seat_angular_acceleration_rms_error_rad_s2":
                 return self._term("acceleration", np.sqrt(mean) / most)
             case "seat_angular_acceleration_rms_ratio":
-                return Term("acceleration", self._per_size("acceleration") / most * np.eye(3))
+                least = UNFELT_ANGULAR_ACCELERATION * np.sqrt(self.grid.duration / weight)
+                scale = min(self._per_size("acceleration"), 1.0 / least)
+                return Term("acceleration", scale / most * np.eye(3))
         raise ValueError(f"a free motion has no budget on {budget.metric}")
 
     def _per_size(self, quantity: Quantity) -> float:
@@ -342,7 +374,7 @@ def _point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) -
     if budget.metric == "attitude_error_max_deg":
         return _attitude_bound(task, times, angle, budget.most)
     peak = np.max(np.linalg.norm(task.asked().seat_angular_acceleration, axis=-1))
-    return NormBound("acceleration", budget.most * max(float(peak), 1e-150))
+    return NormBound("acceleration", budget.most * max(float(peak), UNFELT_ANGULAR_ACCELERATION))
 
 
 def _attitude_bound(task: FreeTask, times: Floats, angle: Floats, most_deg: float) -> AttitudeBound:

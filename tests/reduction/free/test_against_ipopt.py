@@ -28,6 +28,8 @@ from tests.support.bridge import check, peer_task
 from tests.support.ipopt_spline import solve
 from tests.support.spline_task import ATTITUDE, TURNING_PEAK
 
+pytestmark = pytest.mark.slow
+
 G_AND_RATE = {"seat_g_rms_error_g": 0.05, "seat_rate_deviation_relative": 0.1}
 TURNING = {"seat_angular_acceleration_rms_error_rad_s2": 0.15}
 NO_ROUGHER = {

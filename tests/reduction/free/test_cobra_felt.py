@@ -27,6 +27,8 @@ from tests.support.felt_reference import Evaluation, Path3, States, Table, by_pa
 from tests.support.free_motions import ATTITUDE, JOINTS, RATE, TURNING, G
 from tests.support.seat_forms import Floats
 
+pytestmark = pytest.mark.slow
+
 NO_JERK = np.inf
 ALL_FOUR = ("seat_yaw", "seat_pitch", "fork_start", "cab_start")
 MEASURED = {
@@ -184,7 +186,6 @@ def test_budgets_on_what_is_felt(asked: Case, least: float) -> None:
     assert max(spent) > 0.99
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("asked", "least"), ALONE, ids=spoken)
 def test_budgets_that_leave_fast_motions_free(asked: Case, least: float) -> None:
     reaches("cobra", asked, least)

@@ -379,6 +379,7 @@ def paths(metrics: dict[str, Any], prefix: str = "") -> list[str]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(
     "value", [None, "text", [], {}, True, float("nan"), float("-inf"), 10**400, -1e308]

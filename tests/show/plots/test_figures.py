@@ -82,6 +82,7 @@ def test_a_figure_is_of_its_run(synthetic_run: MakeRun) -> None:
     assert [name for name in ours if ours[name] == theirs[name]] == ["adjoint"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("section", "change", "figures"),
     [
@@ -161,6 +162,7 @@ def test_no_version_and_no_time_is_in_the_file(synthetic_run: MakeRun) -> None:
         assert facts["Software"] == "des-coriolis"
 
 
+@pytest.mark.slow
 def test_metrics_of_a_stranger_do_not_stop_the_figures(synthetic_run: MakeRun) -> None:
     columns = trajectory_columns(synthetic_run(11))
     for metrics in (
