@@ -21,7 +21,7 @@ from des_cli.model.profile import Reduction
 from des_cli.pipeline import reduce_profile
 from des_cli.profiles_in.expression import FUNCTIONS
 from des_cli.profiles_in.load import load_profile
-from des_cli.profiles_in.machine_schema import JointLimitsSection, MachineSection, OccupantSection
+from des_cli.profiles_in.machine_schema import JointLimits, MachineSection, Occupant
 from des_cli.profiles_in.machine_yaml import parse_machine
 from des_cli.runs_out.tables import trajectory_names
 from des_cli.units import UNITS, split_unit, suffixes
@@ -100,12 +100,12 @@ def test_the_machine_of_the_page_is_read_and_its_keys_are_those_of_the_schema() 
     assert machine.occupant.bounded
     rows = re.findall(r"^\| (.+?) \| (.+) \|$", text, re.M)
     keys = {split_unit(key)[0] for cell, _ in rows for key in named(cell)}
-    known = {split_unit(key)[0] for key in MachineSection.model_fields}
+    known = {split_unit(key)[0] for key in MachineSection.known_keys()}
     assert keys == known
     bounds = named(next(words for cell, words in rows if cell == "`occupant`"))
-    assert {key for key in OccupantSection.model_fields if not key.endswith("deg_s2")} <= bounds
+    assert {key for key in Occupant.known_keys() if not key.endswith("deg_s2")} <= bounds
     limits = named(next(words for cell, words in rows if cell == "`limits`"))
-    assert {f"{m.stem}_{suffixes(m.quantity)[0]}" for m in JointLimitsSection.measures} <= limits
+    assert {f"{m.stem}_{suffixes(m.quantity)[0]}" for m in JointLimits.measures} <= limits
 
 
 def test_the_jerk_of_a_rounded_table_is_at_most_what_the_page_says() -> None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from multiprocessing import get_context
 
-# One name for each BLAS that numpy and scipy are built with.
+# What a BLAS reads when it is loaded: one name for each that numpy and scipy are built with.
 _THREAD_VARIABLES = (
     "OMP_NUM_THREADS",
     "OPENBLAS_NUM_THREADS",
@@ -49,22 +50,34 @@ def _die_on_interrupt() -> None:
 
 @contextmanager
 def single_blas_thread() -> Iterator[None]:
-    """Let BLAS use one thread, here if numpy is not imported yet, and in new processes.
+    """Let BLAS use one thread, here and in processes that are started meanwhile.
 
     The number of threads changes the last bits of a result; with one thread
     everywhere, ``--jobs`` does not. The systems are banded and small, so that
-    nothing is lost by it.
+    nothing is lost by it. What numpy has loaded already is limited by threadpoolctl;
+    what is loaded later, as scipy's own BLAS is, reads the environment, and so does a
+    new process.
     """
     before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
     os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
     try:
-        yield
+        with _one_thread_of_what_is_loaded():
+            yield
     finally:
         for name, value in before.items():
             if value is None:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
+
+
+def _one_thread_of_what_is_loaded() -> AbstractContextManager[object]:
+    if "numpy" not in sys.modules:
+        return nullcontext()
+    from threadpoolctl import threadpool_limits
+
+    limits: AbstractContextManager[object] = threadpool_limits(limits=1, user_api="blas")
+    return limits
 
 
 def available_cpus() -> int:

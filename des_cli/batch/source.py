@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from des_cli.errors import Complaint, DesError, UsageError
+from des_cli.profiles_in.setting import AnySetting
 
 # What needs numpy is imported when a profile is read: a worker must be able to set its
 # number of BLAS threads before that, and a rejected command line needs none.
@@ -26,7 +27,7 @@ class Source:
     ----------
     name : str
         A path, the name of a built-in profile, or ``-``.
-    settings : tuple of str
+    settings : tuple of str or Setting
         Overrides, ``reduction.r2=0.2``.
     columns : mapping of str to str
         Names of a CSV's columns: ours to the file's.
@@ -39,7 +40,7 @@ class Source:
     """
 
     name: str
-    settings: tuple[str, ...] = ()
+    settings: tuple[AnySetting, ...] = ()
     columns: Mapping[str, str] = field(default_factory=dict)
     separator: str | None = None
     decimal: str | None = None
@@ -55,7 +56,7 @@ def load_source(source: Source) -> Profile:
 
 
 def load_source_variants(
-    source: Source, variants: Sequence[Sequence[str]]
+    source: Source, variants: Sequence[Sequence[AnySetting]]
 ) -> list[Profile | DesError]:
     """Load the profile of a source once, with several lists of further settings.
 

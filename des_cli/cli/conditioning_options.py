@@ -8,6 +8,8 @@ from typing import Any, TypeVar, cast
 
 import click
 
+from des_cli.profiles_in.setting import Setting, value_of_option
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 _OPTIONS: tuple[tuple[str, str, str], ...] = (
@@ -34,7 +36,7 @@ def conditioning_options(command: F) -> F:
     return cast(F, added)
 
 
-def conditioning_settings(values: Mapping[str, str | None]) -> tuple[str, ...]:
+def conditioning_settings(values: Mapping[str, str | None]) -> tuple[Setting, ...]:
     """Turn the options of `conditioning_options` into settings.
 
     What a number or a word may be is the schema's business.
@@ -44,38 +46,39 @@ def conditioning_settings(values: Mapping[str, str | None]) -> tuple[str, ...]:
     click.UsageError
         If a text does not have the form of its option.
 
-    >>> conditioning_settings({"trim": "2.5:", "body_axes": "p=x,q=-y,r=-z", "smooth": "2"})
-    ('trim={from_s: 2.5}', 'axes={p: x, q: -y, r: -z}', 'smooth.cutoff_hz=2')
+    >>> [str(each) for each in conditioning_settings({"trim": "2.5:", "smooth": "2"})]
+    ['trim={"from_s": 2.5}', 'smooth.cutoff_hz=2']
     """
     settings = []
     for key, value in values.items():
         if value is None:
             continue
         text = value.strip()
-        match key:
-            case "trim":
-                settings.append(f"trim={{{_trim(text)}}}")
-            case "body_axes":
-                settings.append(f"axes={{{_axes(text)}}}")
-            case "euler":
-                settings.append(f"samples.euler={text.lower()}")
-            case "resample":
-                settings.append(f"resample.step_s={text}")
-            case "smooth":
-                settings.append(f"smooth.cutoff_hz={text}")
+        path, means = _KEYS[key]
+        settings.append(Setting(path, means(text), f"--{key.replace('_', '-')} {text}"))
     return tuple(settings)
 
 
-def _trim(text: str) -> str:
+def _trim(text: str) -> dict[str, Any]:
     first, colon, last = (part.strip() for part in text.partition(":"))
     if not colon or not (first or last):
         raise click.UsageError(f"--trim {text}: give FROM:TO in seconds, such as 2.5:30 or 12:.")
     ends = (("from_s", first), ("to_s", last))
-    return ", ".join(f"{key}: {value}" for key, value in ends if value)
+    return {key: value_of_option(value) for key, value in ends if value}
 
 
-def _axes(text: str) -> str:
+def _axes(text: str) -> dict[str, str]:
     pairs = [part.partition("=") for part in text.split(",")]
     if not all(name.strip() and equals and axis.strip() for name, equals, axis in pairs):
         raise click.UsageError(f"--body-axes {text}: give three axes, such as p=x,q=-y,r=-z.")
-    return ", ".join(f"{name.strip()}: {axis.strip()}" for name, _, axis in pairs)
+    return {name.strip(): axis.strip() for name, _, axis in pairs}
+
+
+_KEYS: Mapping[str, tuple[str, Callable[[str], Any]]] = {
+    "trim": ("trim", _trim),
+    "body_axes": ("axes", _axes),
+    "euler": ("samples.euler", str.lower),
+    "resample": ("resample.step_s", value_of_option),
+    "smooth": ("smooth.cutoff_hz", value_of_option),
+}
+"""The key of a profile that each option means, and what its text means there."""

@@ -15,6 +15,7 @@ from des_cli.cli.source_options import machine_option, read_stdin, setting_optio
 from des_cli.cli.state_options import in_si, option_name, state_options
 from des_cli.cli.stdout import write_data
 from des_cli.model.machine import JOINTS, Seat
+from des_cli.profiles_in.setting import AnySetting
 
 if TYPE_CHECKING:
     from des_cli.model.arrays import Floats
@@ -44,7 +45,7 @@ Examples:
 def kinematics(
     profile: str | None,
     machine: str | None,
-    settings: tuple[str, ...],
+    settings: tuple[AnySetting, ...],
     columns: dict[str, str],
     separator: str | None,
     decimal: str | None,

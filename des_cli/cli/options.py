@@ -14,6 +14,7 @@ import click
 
 from des_cli.cli.console import Console
 from des_cli.model.metric import STUDY_METRIC, metric_named
+from des_cli.profiles_in.setting import Setting, value_of_option
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -162,7 +163,7 @@ def reduction_options_without(*keys: str) -> Callable[[F], F]:
     return add
 
 
-def reduction_settings(values: Mapping[str, Any]) -> tuple[str, ...]:
+def reduction_settings(values: Mapping[str, Any]) -> tuple[Setting, ...]:
     """Turn the options of `reduction_options` into settings.
 
     Raises
@@ -171,27 +172,34 @@ def reduction_settings(values: Mapping[str, Any]) -> tuple[str, ...]:
         If a budget is given together with the weights that it stands instead of, or
         twice for the same metric.
 
-    >>> reduction_settings({"method": "zero", "r1": "0,2,0", "r2": None})
-    ('reduction.method=zero', 'reduction.r1=[0,2,0]', 'reduction.limits=enforce')
+    >>> [str(each) for each in reduction_settings({"r1": "0,2,0", "r2": None})]
+    ['reduction.r1=[0, 2, 0]']
     """
-    given = {
-        key: _bracketed(values[key])
-        for key, _, _ in _REDUCTION
-        if values.get(key) is not None and values[key] != ()
-    }
+    given: dict[str, tuple[Any, str]] = {}
+    for key, kind, _ in _REDUCTION:
+        value = values.get(key)
+        if value is not None and value != ():
+            option = f"--{key.replace('_', '-')}"
+            said = option if key in _REPEATABLE else f"{option} {value}"
+            given[key] = value_of_option(str(value)) if isinstance(kind, str) else value, said
     if "budget" in given:
         if weights := [f"--{key}" for key in ("r2", "tracking") if key in given]:
             raise click.UsageError(f"--budget stands instead of {' and '.join(weights)}.")
         budgets = read_budgets(values["budget"])
-        given["budget"] = f"{{{', '.join(f'{name}: {most}' for name, most in budgets.items())}}}"
+        said = " ".join(f"--budget {each}" for each in values["budget"])
+        given["budget"] = {metric: value_of_option(most) for metric, most in budgets.items()}, said
         # what a budget buys is meant inside the limits, unless it is said otherwise
-        given.setdefault("limits", "enforce")
-    if given.get("method") == "zero":
-        given.setdefault("limits", "enforce")  # without limits it jumps where it can
+        given.setdefault("limits", ("enforce", said))
+    if values.get("method") == "zero":
+        given.setdefault("limits", ("enforce", "--method zero"))  # without them it jumps
     if "optimise" in given:
-        given["optimise"] = f"[{', '.join(values['optimise'])}]"
+        said = " ".join(f"--optimise {each}" for each in values["optimise"])
+        given["optimise"] = list(values["optimise"]), said
     units = dict.fromkeys(_SECONDS, "_s")
-    return tuple(f"reduction.{key}{units.get(key, '')}={value}" for key, value in given.items())
+    return tuple(
+        Setting(f"reduction.{key}{units.get(key, '')}", value, said)
+        for key, (value, said) in given.items()
+    )
 
 
 def read_budgets(texts: Sequence[str]) -> dict[str, str]:
@@ -246,12 +254,6 @@ def without_percent(metric: str, most: str) -> str:
 def existing_folder(path: str) -> bool:
     """Whether an argument means a folder: it is one, or ends like one."""
     return path.endswith(("/", os.sep)) or Path(path).is_dir()
-
-
-def _bracketed(value: Any) -> str:
-    """Write ``1,2,3`` as a list; anything else as it is."""
-    text = str(value).strip()
-    return f"[{text}]" if "," in text and not text.startswith("[") else text
 
 
 def _console(context: click.Context) -> Console:

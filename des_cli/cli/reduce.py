@@ -28,6 +28,7 @@ from des_cli.cli.source_options import (
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.summary import exit_code_of, print_closing, print_result
 from des_cli.errors import ExitCode
+from des_cli.profiles_in.setting import AnySetting
 
 
 @click.command(
@@ -76,7 +77,7 @@ def reduce(
     console: Console,
     profiles: tuple[str, ...],
     machine: str | None,
-    settings: tuple[str, ...],
+    settings: tuple[AnySetting, ...],
     columns: dict[str, str],
     separator: str | None,
     decimal: str | None,

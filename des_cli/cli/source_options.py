@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -12,6 +11,7 @@ import click
 from des_cli.batch.source import STANDARD_STREAM, Source
 from des_cli.cli.conditioning_options import conditioning_options
 from des_cli.errors import Complaint, FileAccessError
+from des_cli.profiles_in.setting import AnySetting, Setting
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -78,18 +78,18 @@ def machine_option(command: F) -> F:
     )(command)
 
 
-def machine_settings(machine: str | None) -> tuple[str, ...]:
+def machine_settings(machine: str | None) -> tuple[Setting, ...]:
     """Turn ``--machine`` into a setting, which stands before those that change the machine.
 
-    >>> machine_settings("my machine.yaml")
-    ('machine="my machine.yaml"',)
+    >>> [str(setting) for setting in machine_settings("my machine.yaml")]
+    ['machine="my machine.yaml"']
     """
-    return () if machine is None else (f"machine={json.dumps(machine, ensure_ascii=False)}",)
+    return () if machine is None else (Setting("machine", machine, f"--machine {machine}"),)
 
 
 def source_of(
     name: str,
-    settings: tuple[str, ...],
+    settings: tuple[AnySetting, ...],
     *,
     machine: str | None,
     stdin: bytes | None,
@@ -101,7 +101,7 @@ def source_of(
     ----------
     name : str
         Of a file or a built-in profile, or ``-``.
-    settings : tuple of str
+    settings : tuple of str or Setting
         Of ``--set`` and what comes to the command among them.
     machine : str, optional
         Of ``--machine``, which stands before the settings that change a machine.
@@ -151,13 +151,13 @@ def _keep_gap(context: click.Context, parameter: click.Parameter, value: str | N
 
 def _with_gap(
     context: click.Context, parameter: click.Parameter, values: tuple[str, ...]
-) -> tuple[str, ...]:
+) -> tuple[AnySetting, ...]:
     """Return the settings, with what ``--gap`` says as the last one."""
     for value in values:
         if not value.partition("=")[0].strip() or "=" not in value:
             raise click.BadParameter(f"{value!r} is not KEY=VALUE, such as reduction.r2=0.2.")
     gap = context.meta.get(_GAP)
-    return values if gap is None else (*values, f"gap={gap}")
+    return values if gap is None else (*values, Setting("gap", gap, f"--gap {gap}"))
 
 
 def _read_columns(

@@ -33,6 +33,7 @@ from des_cli.cli.sweep_options import (
 )
 from des_cli.errors import ExitCode
 from des_cli.model.metric import SEAT_G_ERROR, SEAT_RATE_DEVIATION
+from des_cli.profiles_in.setting import AnySetting
 
 if TYPE_CHECKING:
     from des_cli.model.profile import Control, Profile
@@ -107,7 +108,7 @@ def sweep(
     r2s: tuple[float, ...] | None,
     controls: tuple[str, ...],
     machine: str | None,
-    settings: tuple[str, ...],
+    settings: tuple[AnySetting, ...],
     columns: dict[str, str],
     separator: str | None,
     decimal: str | None,
@@ -161,7 +162,7 @@ def _plan(
         # what a budget buys is meant inside the limits, and so is what it is compared with
         base = reduction | {"limits": reduction["limits"] or "enforce"}
 
-    def settings(own: Mapping[str, Any], *further: str) -> tuple[str, ...]:
+    def settings(own: Mapping[str, Any], *further: AnySetting) -> tuple[AnySetting, ...]:
         return (*reduction_settings({**base, **own}), *further)
 
     plans = []

@@ -24,6 +24,7 @@ from des_cli.cli.source_options import (
 )
 from des_cli.cli.stdout import write_data
 from des_cli.errors import DesError, ExitCode, Failure
+from des_cli.profiles_in.setting import AnySetting
 
 if TYPE_CHECKING:
     from des_cli.model.profile import Profile
@@ -52,7 +53,7 @@ def validate(
     console: Console,
     profiles: tuple[str, ...],
     machine: str | None,
-    settings: tuple[str, ...],
+    settings: tuple[AnySetting, ...],
     columns: dict[str, str],
     separator: str | None,
     decimal: str | None,

@@ -60,7 +60,7 @@ def check_missing(
             clocks = _clocks(header) if stem == "t" else []
             if clocks:
                 form = option("--column", f"t={clocks[0]}")
-                words = [f"{words[0]}; {plain(clocks[0])} holds times of day: {form} reads them"]
+                words = [f"{words[0]}; {plain(clocks[0])} holds clock times: {form} reads them"]
             lost = lost or not clocks
         complaints += [Complaint(header.where, each) for each in words]
     unknown = [

@@ -12,6 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import mean_of_sides
 from des_cli.model.profile import BodyRates, JointCommands
+from des_cli.profiles_in.command_schema import Command
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.sampling import (
     MAX_SAMPLES,
@@ -27,7 +28,6 @@ from des_cli.profiles_in.sampling import (
     sample_middle,
     sample_sides,
 )
-from des_cli.profiles_in.schema import Command
 from des_cli.profiles_in.sections import Measure, Section
 from des_cli.profiles_in.wording import one_of
 from des_cli.profiles_in.yaml_nodes import Step

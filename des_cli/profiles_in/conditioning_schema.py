@@ -6,7 +6,7 @@ from typing import Annotated, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from des_cli.profiles_in.sections import Measure, Number, Section, measured
+from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section
 
 Direction: TypeAlias = Literal["x", "y", "z", "-x", "-y", "-z"]
 EulerOrder: TypeAlias = Literal["xyz", "xzy", "yxz", "yzx", "zxy", "zyx"]
@@ -16,20 +16,18 @@ EULER_ORDERS: tuple[EulerOrder, ...] = get_args(EulerOrder)
 
 _Positive = Annotated[Number, Field(gt=0, le=1e12)]
 
-Trim = measured(
-    "Trim",
-    "The part of a record that is flown.",
-    (
-        Measure("from", "time", "the first time kept", required=False),
-        Measure("to", "time", "the last time kept", required=False),
-    ),
-)
-Resample = measured(
-    "Resample",
-    "A uniform grid in the place of the recorded times.",
-    (Measure("step", "time", "the time between samples"),),
-    _Positive,
-)
+
+class Trim(Section):
+    """The part of a record that is flown."""
+
+    from_: Annotated[Number, Measure("time", "the first time kept")] = OMITTED
+    to: Annotated[Number, Measure("time", "the last time kept")] = OMITTED
+
+
+class Resample(Section):
+    """A uniform grid in the place of the recorded times."""
+
+    step: Annotated[_Positive, Measure("time", "the time between samples", required=True)] = OMITTED
 
 
 class BodyAxes(Section):

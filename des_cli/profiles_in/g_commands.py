@@ -38,7 +38,7 @@ def read_g(section: Section, time: Any, findings: Findings) -> tuple[Floats, GCo
     Parameters
     ----------
     section : Section
-        As `g_schema.g_section` makes it.
+        A `g_schema.G`.
     time : Section, optional
         The ``time:`` section; what it does not say follows from the onsets.
     findings : Findings

@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Discriminator, Field, Tag
 
-from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault, measured
+from des_cli.profiles_in.command_schema import Command, NumberKind, SegmentsKind, TextKind
+from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault
 
 G_STEMS = ("gx", "gy", "gz")
 RATE_STEMS = ("p", "q")
@@ -18,7 +19,7 @@ NotNegative = Annotated[Number, Field(ge=0, le=1e12)]
 Positive = Annotated[Number, Field(gt=0, le=1e12)]
 GValue = Annotated[Number, Field(ge=-MOST_G, le=MOST_G)]
 
-WASHOUT_TIME = Measure("washout", "time", "the washout time of the rates", required=False)
+Washout = Annotated[Positive, Measure("time", "the washout time of the rates")]
 
 _WORDS = (
     "a number, an expression in t, a list of segments {from_s, to_s, value}, or a list of onsets "
@@ -70,37 +71,26 @@ def _kind(value: Any) -> str | None:
     return {int: "<number>", float: "<number>", str: "<text>"}.get(type(value))
 
 
-def g_section(kinds: Any, command: Any) -> type[Section]:
-    """Make the model of a ``g:`` section.
+GComponent = Annotated[
+    Annotated[list[Onset], AfterValidator(_check_onsets), Tag("<onsets>")]
+    | NumberKind
+    | TextKind
+    | SegmentsKind,
+    Discriminator(
+        _kind,
+        custom_error_type="profile",
+        custom_error_message="{words}",
+        custom_error_context={"words": f"must be {_WORDS}"},
+    ),
+]
 
-    Parameters
-    ----------
-    kinds : type
-        The kinds of any command, a union with the tags ``<number>``, ``<text>`` and
-        ``<list>``, to which onsets are added.
-    command : type
-        Their union as rates have it.
-    """
-    component = Annotated[
-        Annotated[list[Onset], AfterValidator(_check_onsets), Tag("<onsets>")] | kinds,
-        Discriminator(
-            _kind,
-            custom_error_type="profile",
-            custom_error_message="{words}",
-            custom_error_context={"words": f"must be {_WORDS}"},
-        ),
-    ]
-    fields: dict[str, Any] = {
-        f"{stem}_g": (component, Field(default=OMITTED, description=f"asked G{stem[1]}"))
-        for stem in G_STEMS
-    }
-    fields |= {
-        key: (Positive, Field(default=OMITTED, description=WASHOUT_TIME.title))
-        for key in WASHOUT_TIME.keys
-    }
-    rates = (
-        Measure("p", "rate", "the roll rate p", required=False),
-        Measure("q", "rate", "the pitch rate q", required=False),
-    )
-    doc = "The G-vector that the pilot is to feel, in his signs, and perhaps rates beside it."
-    return measured("G", doc, (*rates, WASHOUT_TIME), command, **fields)
+
+class G(Section):
+    """The G-vector that the pilot is to feel, in his signs, and perhaps rates beside it."""
+
+    p: Annotated[Command, Measure("rate", "the roll rate p")] = OMITTED
+    q: Annotated[Command, Measure("rate", "the pitch rate q")] = OMITTED
+    gx_g: Annotated[GComponent, Field(description="asked Gx")] = OMITTED
+    gy_g: Annotated[GComponent, Field(description="asked Gy")] = OMITTED
+    gz_g: Annotated[GComponent, Field(description="asked Gz")] = OMITTED
+    washout: Washout = OMITTED

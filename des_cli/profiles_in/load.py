@@ -22,6 +22,7 @@ from des_cli.profiles_in.profile_yaml import (
     parse_settings,
 )
 from des_cli.profiles_in.schema import ProfileSettings
+from des_cli.profiles_in.setting import AnySetting
 from des_cli.profiles_in.source import decode
 
 _SPLIT = "split"
@@ -30,7 +31,7 @@ _SPLIT = "split"
 def load_profile(
     source: str | Path,
     *,
-    settings: Sequence[str] = (),
+    settings: Sequence[AnySetting] = (),
     columns: Mapping[str, str] | None = None,
     stdin: bytes | None = None,
     part: int | None = None,
@@ -45,8 +46,9 @@ def load_profile(
         A ``.yaml``, ``.yml`` or ``.csv`` file, ``-`` for standard input, or
         the name of a built-in maneuver where no such file exists. Other files
         and standard input are YAML or CSV by what they hold.
-    settings : sequence of str
-        ``--set`` strings: ``reduction.r2=0.2``, ``joints.arm_rpm[1].to_s=4``.
+    settings : sequence of str or Setting
+        ``--set`` strings: ``reduction.r2=0.2``, ``joints.arm_rpm[1].to_s=4``; or values of
+        options.
     columns : mapping of str to str, optional
         For a CSV profile: the contract's name of a column, with its unit, to
         the name that it has in the file (``{"t_s": "t"}``).
@@ -77,7 +79,7 @@ def load_profile(
 def count_parts(
     source: str | Path,
     *,
-    settings: Sequence[str] = (),
+    settings: Sequence[AnySetting] = (),
     columns: Mapping[str, str] | None = None,
     stdin: bytes | None = None,
     separator: str | None = None,
@@ -92,7 +94,7 @@ def count_parts(
         something to split.
     """
     file = ProfileFile.read(source, stdin)
-    asked = any(_SPLIT in setting for setting in settings)
+    asked = any(_SPLIT in str(setting) for setting in settings)
     # The word has to stand somewhere: a long table need not be read to know that.
     if not asked and _SPLIT.encode() not in file.data:
         return 1
@@ -105,7 +107,7 @@ def count_parts(
 
 def parse_file(
     file: ProfileFile,
-    settings: Sequence[str],
+    settings: Sequence[AnySetting],
     columns: dict[str, str],
     gaps: GapHandling,
     separator: str | None,
@@ -119,7 +121,11 @@ def parse_file(
     given = {"separator": separator, "decimal": decimal}
     written = {key: value for key, value in given.items() if value is not None}
     if settings or columns or written:
-        options = [list(settings), sorted(columns.items()), *([written] if written else [])]
+        options = [
+            list(map(str, settings)),
+            sorted(columns.items()),
+            *([written] if written else []),
+        ]
         digest.update(json.dumps(options).encode())
     if gaps.part is not None:
         digest.update(f"part {gaps.part}".encode())
@@ -159,7 +165,7 @@ def _load_csv(
     text: str,
     reading: Reading,
     name: str,
-    settings: Sequence[str],
+    settings: Sequence[AnySetting],
     columns: Mapping[str, str],
     written: Mapping[str, str],
 ) -> Profile:

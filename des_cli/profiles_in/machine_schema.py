@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field
 
 from des_cli.model.machine import Variable
 from des_cli.profiles_in.expression import ExpressionError, parse_expression
-from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault, measured
+from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault
 from des_cli.profiles_in.wording import shown
 
 DEFAULT_MACHINE = "des"
@@ -78,40 +78,48 @@ def _checked(check: Any) -> AfterValidator:
 LengthName = Annotated[str, Field(strict=True), _checked(split_signed_length)]
 AngleText = Annotated[str, Field(strict=True), _checked(split_angle)]
 
-Row = measured(
-    "Row",
-    "One row of the modified Denavit-Hartenberg table.",
-    (
-        Measure("alpha", "angle", "the twist alpha", required=False),
-        Measure("a", "length", "the length a", required=False, others=("a",)),
-        Measure("d", "length", "the offset d", required=False, others=("d",)),
-        Measure("theta", "angle", "the turn theta", required=False, others=("theta",)),
-    ),
-    a=(LengthName, Field(default=OMITTED, description="a named length: Lx or -Lx")),
-    d=(LengthName, Field(default=OMITTED, description="a named length: Lx or -Lx")),
-    theta=(AngleText, Field(default=OMITTED, description="-arm, seat_yaw, pi/2, arm + pi/2")),
-)
-JointLimitsSection = measured(
-    "JointLimits",
-    "What a joint may do, in both directions.",
-    (
-        Measure("angle", "angle", "the angle limit", required=False, others=("angle",)),
-        Measure("rate", "rate", "the rate limit", required=False),
-        Measure("acceleration", "acceleration", "the acceleration limit", required=False),
-        Measure("jerk", "jerk", "the jerk limit", required=False, others=("jerk",)),
-    ),
-    Positive,
-    angle=(Literal["endless"], Field(default=OMITTED, description="a joint without end stops")),
-    jerk=(Literal["unlimited"], Field(default=OMITTED, description="a joint without a jerk limit")),
-)
+
+class Row(Section):
+    """One row of the modified Denavit-Hartenberg table."""
+
+    alpha: Annotated[Number, Measure("angle", "the twist alpha")] = OMITTED
+    a_number: Annotated[Number, Measure("length", "the length a", others=("a",), stem="a")] = (
+        OMITTED
+    )
+    d_number: Annotated[Number, Measure("length", "the offset d", others=("d",), stem="d")] = (
+        OMITTED
+    )
+    theta_number: Annotated[
+        Number, Measure("angle", "the turn theta", others=("theta",), stem="theta")
+    ] = OMITTED
+    a: Annotated[LengthName, Field(description="a named length: Lx or -Lx")] = OMITTED
+    d: Annotated[LengthName, Field(description="a named length: Lx or -Lx")] = OMITTED
+    theta: Annotated[AngleText, Field(description="-arm, seat_yaw, pi/2, arm + pi/2")] = OMITTED
+
+
+class JointLimits(Section):
+    """What a joint may do, in both directions."""
+
+    angle_number: Annotated[
+        Positive, Measure("angle", "the angle limit", others=("angle",), stem="angle")
+    ] = OMITTED
+    rate: Annotated[Positive, Measure("rate", "the rate limit")] = OMITTED
+    acceleration: Annotated[Positive, Measure("acceleration", "the acceleration limit")] = OMITTED
+    jerk_number: Annotated[
+        Positive, Measure("jerk", "the jerk limit", others=("jerk",), stem="jerk")
+    ] = OMITTED
+    angle: Annotated[Literal["endless"], Field(description="a joint without end stops")] = OMITTED
+    jerk: Annotated[Literal["unlimited"], Field(description="a joint without a jerk limit")] = (
+        OMITTED
+    )
 
 
 class LimitsSection(Section):
     """Limits joint by joint."""
 
-    arm: JointLimitsSection = OMITTED  # type: ignore[valid-type]
-    fork: JointLimitsSection = OMITTED  # type: ignore[valid-type]
-    cab: JointLimitsSection = OMITTED  # type: ignore[valid-type]
+    arm: JointLimits = OMITTED
+    fork: JointLimits = OMITTED
+    cab: JointLimits = OMITTED
 
 
 def _check_interval(bounds: list[float | None]) -> list[float | None]:
@@ -130,8 +138,8 @@ Interval = Annotated[
 ]
 
 
-class OccupantBase(Section):
-    """Bounds on the G-vector, which is in g alone."""
+class Occupant(Section):
+    """What the person in the seat may get."""
 
     gx_g: Interval = OMITTED
     gy_g: Interval = OMITTED
@@ -139,47 +147,22 @@ class OccupantBase(Section):
     g_onset_g_s: Annotated[
         Positive, Field(description="largest rate of change of a component of the G-vector")
     ] = OMITTED
+    seat_angular_acceleration: Annotated[
+        Positive, Measure("acceleration", "the seat's largest total angular acceleration")
+    ] = OMITTED
 
 
-OccupantSection = measured(
-    "Occupant",
-    "What the person in the seat may get.",
-    (
-        Measure(
-            "seat_angular_acceleration",
-            "acceleration",
-            "the seat's largest total angular acceleration",
-            required=False,
-        ),
-    ),
-    Positive,
-    base=OccupantBase,
-)
-
-
-class MachineBase(Section):
-    """Keys of a machine without a unit."""
+class MachineSection(Section):
+    """A centrifuge: named lengths or rows, limits, bounds for the occupant, gravity."""
 
     name: Annotated[Text, Field(max_length=100)] = OMITTED
     base: Text = OMITTED
     fork_axis: Literal["radial", "tangential"] = OMITTED
     limits: LimitsSection = OMITTED
-    occupant: OccupantSection = OMITTED  # type: ignore[valid-type]
-    rows: Annotated[list[Row], Field(min_length=3, max_length=100)] = OMITTED  # type: ignore[valid-type]
+    occupant: Occupant = OMITTED
+    rows: Annotated[list[Row], Field(min_length=3, max_length=100)] = OMITTED
     source: Annotated[str, Field(strict=True, max_length=2000)] = OMITTED
-
-
-MachineSection = measured(
-    "MachineSection",
-    "A centrifuge: named lengths or rows, limits, bounds for the occupant, gravity.",
-    (
-        Measure("gravity", "specific_force", "gravity", required=False),
-        Measure("lengths", "length", "the lengths", required=False),
-    ),
-    gravity_m_s2=(Positive, OMITTED),
-    gravity_ft_s2=(Positive, OMITTED),
-    gravity_g=(Positive, OMITTED),
-    lengths_m=(dict[str, NotNegative], OMITTED),
-    lengths_ft=(dict[str, NotNegative], OMITTED),
-    base=MachineBase,
-)
+    gravity: Annotated[Positive, Measure("specific_force", "gravity", described=False)] = OMITTED
+    lengths: Annotated[
+        dict[str, NotNegative], Measure("length", "the lengths", described=False)
+    ] = OMITTED

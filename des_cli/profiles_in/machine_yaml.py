@@ -21,7 +21,8 @@ from des_cli.model.machine import (
 from des_cli.model.machines import MACHINES
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.machine_rows import read_chain_of_section
-from des_cli.profiles_in.machine_schema import JointLimitsSection, MachineSection
+from des_cli.profiles_in.machine_schema import JointLimits as JointLimitsSection
+from des_cli.profiles_in.machine_schema import MachineSection
 from des_cli.profiles_in.wording import did_you_mean, one_of, plain
 from des_cli.profiles_in.yaml_nodes import Step, parse_yaml
 from des_cli.units import STANDARD_GRAVITY_M_S2

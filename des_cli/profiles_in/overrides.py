@@ -1,4 +1,4 @@
-"""``--set reduction.r2=0.2``: values that replace those of a profile."""
+"""Values that replace those of a profile, by ``--set reduction.r2=0.2`` or by an option."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from des_cli.errors import Complaint, ProfileError
 from des_cli.model.metric import STUDY_METRIC
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE
 from des_cli.profiles_in.machine_yaml import is_machine_file
+from des_cli.profiles_in.setting import AnySetting
 from des_cli.profiles_in.wording import plain, shown
-from des_cli.profiles_in.yaml_nodes import Node, Step, parse_yaml, path_text
+from des_cli.profiles_in.yaml_nodes import Node, Step, node_of, parse_yaml, path_text
 from des_cli.units import split_unit
 
-LABEL = "--set"
-"""How places begin that are settings and not lines of a file."""
+OPTION = "--"
+"""How places begin that are options and not lines of a file."""
 
 _BUDGET, _WEIGHTS = "budget", ("r2", "tracking")
 """Keys of the reduction of which the first stands instead of the others."""
@@ -24,7 +25,7 @@ _ALTERNATIVES = ("joints", "body_rates", "samples")
 """Sections of which a profile has one."""
 
 
-def apply_settings(root: Node, settings: Sequence[str]) -> list[Complaint]:
+def apply_settings(root: Node, settings: Sequence[AnySetting]) -> list[Complaint]:
     """Change a document by settings, in their order.
 
     A key replaces the one that gives the same quantity in another unit, or without
@@ -39,8 +40,9 @@ def apply_settings(root: Node, settings: Sequence[str]) -> list[Complaint]:
     ----------
     root : Node
         A mapping; changed in place.
-    settings : sequence of str
-        ``path=value``; the value is YAML: ``0.2``, ``[0, 2, 0]``, ``seat``.
+    settings : sequence of Setting or str
+        A text is one of ``--set``, ``path=value``; the value is YAML: ``0.2``,
+        ``[0, 2, 0]``, ``seat``.
 
     Returns
     -------
@@ -56,13 +58,18 @@ def apply_settings(root: Node, settings: Sequence[str]) -> list[Complaint]:
     return complaints
 
 
-def _apply(root: Node, setting: str) -> None:
-    label = f"{LABEL} {plain(setting)}"
-    name, equals, text = setting.partition("=")
-    if not equals:
-        raise _rejected(label, "must be path=value, such as reduction.r2=0.2")
-    path = parse_path(name.strip(), label)
-    value = _value(text, label)
+def _apply(root: Node, setting: AnySetting) -> None:
+    if isinstance(setting, str):
+        label = f"--set {plain(setting)}"
+        name, equals, text = setting.partition("=")
+        if not equals:
+            raise _rejected(label, "must be path=value, such as reduction.r2=0.2")
+        path = parse_path(name.strip(), label)
+        value = _value(text, label)
+    else:
+        label = plain(setting.option)
+        path = parse_path(setting.path, label)
+        value = node_of(setting.value, label)
     node = root
     for depth, step in enumerate(path[:-1]):
         node = _descend(node, step, path[: depth + 1], label)

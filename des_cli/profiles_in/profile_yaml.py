@@ -32,13 +32,14 @@ from des_cli.profiles_in.machine_yaml import (
     named_machine,
     parse_machine,
 )
-from des_cli.profiles_in.overrides import LABEL, apply_settings
+from des_cli.profiles_in.overrides import OPTION, apply_settings
 from des_cli.profiles_in.profile_csv import parse_samples
 from des_cli.profiles_in.reduction_section import read_reduction
 from des_cli.profiles_in.schema import BodyRates as BodyRatesSection
 from des_cli.profiles_in.schema import Joints as JointsSection
 from des_cli.profiles_in.schema import ProfileDocument, ProfileSettings
 from des_cli.profiles_in.sections import Section
+from des_cli.profiles_in.setting import AnySetting
 from des_cli.profiles_in.source import decode, decode_table, label_of, read_source
 from des_cli.profiles_in.wording import one_of
 from des_cli.profiles_in.yaml_nodes import Node, parse_yaml
@@ -83,16 +84,18 @@ class Reading:
         name : str
         place : str
             Where it is named: a path in a profile starts at the profile's
-            folder, one of a ``--set`` at the current folder.
+            folder, one of an option at the current folder.
         """
-        path = Path(name) if place.startswith(LABEL) else self.folder / name
+        path = Path(name) if place.startswith(OPTION) else self.folder / name
         label = label_of(path)
         data = read_source(path, label)
         self.digest.update(hashlib.sha256(data).digest())
         return label, data
 
 
-def parse_profile(text: str, reading: Reading, name: str, settings: Sequence[str]) -> Profile:
+def parse_profile(
+    text: str, reading: Reading, name: str, settings: Sequence[AnySetting]
+) -> Profile:
     """Read a YAML profile.
 
     Parameters
@@ -101,8 +104,7 @@ def parse_profile(text: str, reading: Reading, name: str, settings: Sequence[str
     reading : Reading
     name : str
         Used where the profile has none.
-    settings : sequence of str
-        ``--set`` strings.
+    settings : sequence of Setting or str
 
     Raises
     ------
@@ -116,7 +118,7 @@ def parse_profile(text: str, reading: Reading, name: str, settings: Sequence[str
 
 
 def parse_document(
-    text: str, label: str, settings: Sequence[str]
+    text: str, label: str, settings: Sequence[AnySetting]
 ) -> tuple[ProfileDocument, Findings]:
     """Read the sections of a YAML profile, before anything is made of them.
 
@@ -134,7 +136,7 @@ def parse_document(
     return validated(ProfileDocument, findings), findings
 
 
-def parse_settings(settings: Sequence[str], label: str) -> tuple[ProfileSettings, Findings]:
+def parse_settings(settings: Sequence[AnySetting], label: str) -> tuple[ProfileSettings, Findings]:
     """Read the settings of a profile that has only samples of its own.
 
     Returns
@@ -159,7 +161,7 @@ def validated(model: type[_AnySection], findings: Findings) -> _AnySection:
     except ValidationError as error:
         failed = findings.add_validation(error)
     rest = {key: value for key, value in data.items() if key not in failed}
-    rest = {key: value for key, value in rest.items() if key in model.model_fields}
+    rest = {key: value for key, value in rest.items() if key in model.known_keys()}
     required = {"format": "des-coriolis/1"} if "format" in model.model_fields else {}
     return model.model_validate(required | rest)
 

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.profiles_in.expression import Expression, Side, constant_expression
+from des_cli.profiles_in.dual import Side
+from des_cli.profiles_in.expression import Expression, constant_expression
 from des_cli.profiles_in.sections import Section
 
 MAX_SAMPLES = 5_000_000

@@ -22,6 +22,7 @@ from des_cli.model.profile import (
     Method,
     Objective,
 )
+from des_cli.profiles_in.command_schema import Command, choice
 from des_cli.profiles_in.conditioning_schema import (
     BodyAxes,
     EulerOrder,
@@ -30,11 +31,10 @@ from des_cli.profiles_in.conditioning_schema import (
     Trim,
 )
 from des_cli.profiles_in.dialect import parse_decimal, parse_separator
-from des_cli.profiles_in.expression import Expression, ExpressionError, parse_expression
-from des_cli.profiles_in.g_schema import WASHOUT_TIME, g_section
+from des_cli.profiles_in.g_schema import G, Washout
 from des_cli.profiles_in.gaps import GapPolicy
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE, MachineSection
-from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault, measured
+from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault
 from des_cli.profiles_in.wording import shown
 from des_cli.units import suffixes
 
@@ -50,13 +50,6 @@ def _check_name(name: str) -> str:
     return name
 
 
-def _parse(text: str) -> Expression:
-    try:
-        return parse_expression(text)
-    except ExpressionError as error:
-        raise fault(str(error)) from None
-
-
 def _in_words(parse: Callable[[str], str]) -> Callable[[str], str]:
     """Return a parser whose ValueError is a sentence for the user."""
 
@@ -69,122 +62,50 @@ def _in_words(parse: Callable[[str], str]) -> Callable[[str], str]:
     return check
 
 
-def kind_of(value: Any) -> str | None:
-    """Tell numbers, text and lists apart, so that each is checked as what it is."""
-    if isinstance(value, bool):
-        return None
-    kinds = {int: "<number>", float: "<number>", str: "<text>", list: "<list>", dict: "<mapping>"}
-    return kinds.get(type(value))
+class Seat(Section):
+    """How the seat is fixed in the cab."""
+
+    yaw: Annotated[Number, Measure("angle", "the seat's yaw")] = OMITTED
+    pitch: Annotated[Number, Measure("angle", "the seat's pitch-back")] = OMITTED
 
 
-def _choice(words: str) -> Discriminator:
-    return Discriminator(
-        kind_of,
-        custom_error_type="profile",
-        custom_error_message="{words}",
-        custom_error_context={"words": f"must be {words}"},
-    )
+class Initial(Section):
+    """Joint angles at the start; with joint commands only the arm's."""
+
+    arm: Annotated[Number, Measure("angle", "the arm's initial angle")] = OMITTED
+    fork: Annotated[Number, Measure("angle", "the fork's initial angle")] = OMITTED
+    cab: Annotated[Number, Measure("angle", "the cab's initial angle")] = OMITTED
 
 
-ExpressionText = Annotated[
-    str,
-    Field(strict=True, description="arithmetic in t, the profile's time in seconds"),
-    AfterValidator(_parse),
-]
-Constant = Annotated[
-    Annotated[Number, Tag("<number>")] | Annotated[ExpressionText, Tag("<text>")],
-    _choice("a number or an expression in t"),
-]
+class Time(Section):
+    """The grid of profile times."""
 
-_FROM = Measure("from", "time", "the start of a segment")
-_TO = Measure("to", "time", "the end of a segment")
-Segment = measured(
-    "Segment",
-    "One stretch of a command, from and to a profile time.",
-    (_FROM, _TO),
-    value=(Constant, Field(description="number or expression in t, in the unit of the command")),
-)
+    # read_time asks for each, unless onsets of G make the times
+    start: Annotated[Number, Measure("time", "the first time")] = OMITTED
+    stop: Annotated[Number, Measure("time", "the last time")] = OMITTED
+    step: Annotated[Number, Measure("time", "the time between samples")] = OMITTED
 
 
-def _check_segments(segments: list[Any]) -> list[Any]:
-    if not segments:
-        raise fault("is an empty list: give at least one segment")
-    for index, segment in enumerate(segments):
-        start, stop = segment.si("from"), segment.si("to")
-        if not stop > start:
-            where = (index, segment.given_key("to"))
-            raise fault(f"must be greater than {segment.written('from')}", where)
-        if index and not _same_time(start, previous := segments[index - 1].si("to")):
-            kind = "a gap" if start > previous else "an overlap"
-            raise fault(
-                f"leaves {kind}: it must be where the previous segment ends ({previous:.12g} s)",
-                (index, segment.given_key("from")),
-            )
-    return segments
-
-
-def _same_time(a: float, b: float) -> bool:
-    return abs(a - b) <= 1e-9 * max(1.0, abs(a), abs(b))
-
-
-_Number = Annotated[Number, Tag("<number>")]
-_Text = Annotated[ExpressionText, Tag("<text>")]
-_Segments = Annotated[list[Segment], AfterValidator(_check_segments), Tag("<list>")]  # type: ignore[valid-type]
-Command = Annotated[
-    _Number | _Text | _Segments,
-    _choice("a number, an expression in t, or a list of segments {from_s, to_s, value}"),
-]
-
-Seat = measured(
-    "Seat",
-    "How the seat is fixed in the cab.",
-    (
-        Measure("yaw", "angle", "the seat's yaw", required=False),
-        Measure("pitch", "angle", "the seat's pitch-back", required=False),
-    ),
-)
-Initial = measured(
-    "Initial",
-    "Joint angles at the start; with joint commands only the arm's.",
-    tuple(
-        Measure(joint, "angle", f"the {joint}'s initial angle", required=False)
-        for joint in ("arm", "fork", "cab")
-    ),
-)
-Time = measured(
-    "Time",
-    "The grid of profile times.",
-    (
-        # read_time asks for each, unless onsets of G make the times
-        Measure("start", "time", "the first time", required=False),
-        Measure("stop", "time", "the last time", required=False),
-        Measure("step", "time", "the time between samples", required=False),
-    ),
-)
 ARM_ANGLES = tuple(f"arm_{suffix}" for suffix in suffixes("angle"))
 """Keys that give the arm by its angle instead of its rate."""
 
-Joints = measured(
-    "Joints",
-    "A velocity (or angle) command for the arm, position commands for the fork and the cab.",
-    (
-        Measure("arm", "rate", "the arm's rate or angle", others=ARM_ANGLES),
-        Measure("fork", "angle", "the fork's angle"),
-        Measure("cab", "angle", "the cab's angle"),
-    ),
-    Command,
-)
-BodyRates = measured(
-    "BodyRates",
-    "Roll, pitch and yaw rate of the seat, in seat axes.",
-    (
-        Measure("p", "rate", "the roll rate p"),
-        Measure("q", "rate", "the pitch rate q"),
-        Measure("r", "rate", "the yaw rate r"),
-    ),
-    Command,
-)
-G = g_section(_Number | _Text | _Segments, Command)
+
+class Joints(Section):
+    """A velocity (or angle) command for the arm, position commands for the fork and the cab."""
+
+    arm: Annotated[
+        Command, Measure("rate", "the arm's rate or angle", required=True, others=ARM_ANGLES)
+    ] = OMITTED
+    fork: Annotated[Command, Measure("angle", "the fork's angle", required=True)] = OMITTED
+    cab: Annotated[Command, Measure("angle", "the cab's angle", required=True)] = OMITTED
+
+
+class BodyRates(Section):
+    """Roll, pitch and yaw rate of the seat, in seat axes."""
+
+    p: Annotated[Command, Measure("rate", "the roll rate p", required=True)] = OMITTED
+    q: Annotated[Command, Measure("rate", "the pitch rate q", required=True)] = OMITTED
+    r: Annotated[Command, Measure("rate", "the yaw rate r", required=True)] = OMITTED
 
 
 Separator = Annotated[
@@ -199,24 +120,16 @@ Decimal = Annotated[
 ]
 
 
-class SamplesReadingBase(Section):
-    """Keys of how samples are read that have no unit."""
+class SamplesReading(Section):
+    """How the samples of a CSV file are read."""
 
     euler: EulerOrder = OMITTED
     separator: Separator = OMITTED
     decimal: Decimal = OMITTED
+    washout: Washout = OMITTED
 
 
-SamplesReading = measured(
-    "SamplesReading",
-    "How the samples of a CSV file are read.",
-    (WASHOUT_TIME,),
-    Annotated[Number, Field(gt=0, le=1e12)],
-    base=SamplesReadingBase,
-)
-
-
-class Samples(SamplesReading):  # type: ignore[misc, valid-type]
+class Samples(SamplesReading):
     """Commands recorded in a CSV file beside the profile."""
 
     file: Annotated[str, Field(strict=True, min_length=1)]
@@ -230,7 +143,7 @@ NotNegative = Annotated[Number, Field(ge=0, le=1e12)]
 Three = Field(min_length=3, max_length=3)
 
 
-_each_joint = _choice("a number, or one for each of arm, fork and cab")
+_each_joint = choice("a number, or one for each of arm, fork and cab")
 PositiveEach = Annotated[
     Annotated[Positive, Tag("<number>")] | Annotated[list[Positive], Three, Tag("<list>")],
     _each_joint,
@@ -288,8 +201,8 @@ def _check_unequal(names: list[str]) -> list[str]:
     return names
 
 
-class ReductionBase(Section):
-    """Keys of a reduction without a unit."""
+class ReductionSection(Section):
+    """How to reduce the Coriolis; what is left out keeps its default."""
 
     method: Method = OMITTED
     algorithm: Algorithm = OMITTED
@@ -312,24 +225,18 @@ class ReductionBase(Section):
         Field(description="share of the recorded seat rate or G that may change first"),
     ] = OMITTED
     tolerance: Positive = OMITTED
-
-
-ReductionSection = measured(
-    "ReductionSection",
-    "How to reduce the Coriolis; what is left out keeps its default.",
-    (
-        Measure("lead_in", "time", "the time to ramp from rest to the start", required=False),
-        Measure("lead_out", "time", "the time to ramp from the end to rest", required=False),
-    ),
-    NotNegative,
-    base=ReductionBase,
-)
+    lead_in: Annotated[NotNegative, Measure("time", "the time to ramp from rest to the start")] = (
+        OMITTED
+    )
+    lead_out: Annotated[NotNegative, Measure("time", "the time to ramp from the end to rest")] = (
+        OMITTED
+    )
 
 
 MachineChoice = Annotated[
     Annotated[str, Field(strict=True, min_length=1), Tag("<text>")]
-    | Annotated[MachineSection, Tag("<mapping>")],  # type: ignore[valid-type]
-    _choice("a machine's name, the path of a machine file, or a mapping"),
+    | Annotated[MachineSection, Tag("<mapping>")],
+    choice("a machine's name, the path of a machine file, or a mapping"),
 ]
 
 
@@ -342,31 +249,31 @@ class ProfileSettings(Section):
     }
     name: Annotated[str, Field(strict=True), AfterValidator(_check_name)] = OMITTED
     machine: MachineChoice = DEFAULT_MACHINE
-    seat: Seat = OMITTED  # type: ignore[valid-type]
-    initial: Initial = OMITTED  # type: ignore[valid-type]
-    samples: SamplesReading = OMITTED  # type: ignore[valid-type]
+    seat: Seat = OMITTED
+    initial: Initial = OMITTED
+    samples: SamplesReading = OMITTED
     gap: GapPolicy = OMITTED
-    trim: Trim = OMITTED  # type: ignore[valid-type]
+    trim: Trim = OMITTED
     axes: BodyAxes = OMITTED
-    resample: Resample = OMITTED  # type: ignore[valid-type]
+    resample: Resample = OMITTED
     smooth: Smooth = OMITTED
-    reduction: ReductionSection = OMITTED  # type: ignore[valid-type]
+    reduction: ReductionSection = OMITTED
 
 
 class ProfileDocument(ProfileSettings):
     """A maneuver profile of des-coriolis."""
 
     format: Literal["des-coriolis/1"]
-    seat: Seat = OMITTED  # type: ignore[valid-type]
-    initial: Initial = OMITTED  # type: ignore[valid-type]
-    time: Time = OMITTED  # type: ignore[valid-type]
-    joints: Joints = OMITTED  # type: ignore[valid-type]
-    body_rates: BodyRates = OMITTED  # type: ignore[valid-type]
-    g: G = OMITTED  # type: ignore[valid-type]
+    seat: Seat = OMITTED
+    initial: Initial = OMITTED
+    time: Time = OMITTED
+    joints: Joints = OMITTED
+    body_rates: BodyRates = OMITTED
+    g: G = OMITTED
     samples: Samples = OMITTED
-    trim: Trim = OMITTED  # type: ignore[valid-type]
-    resample: Resample = OMITTED  # type: ignore[valid-type]
-    reduction: ReductionSection = OMITTED  # type: ignore[valid-type]
+    trim: Trim = OMITTED
+    resample: Resample = OMITTED
+    reduction: ReductionSection = OMITTED
 
 
 class _Schema(GenerateJsonSchema):

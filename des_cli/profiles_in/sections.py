@@ -1,26 +1,29 @@
 """Sections of a profile whose keys carry units, as pydantic models.
 
 A quantity such as the fork's angle may be given by any key of the unit table
-that measures it (``fork_deg``, ``fork_rad``): the model has a field for each,
-and exactly one of them may be given.
+that measures it (``fork_deg``, ``fork_rad``). The model has one field for it, annotated
+with its `Measure`; one validator finds which of the keys is given, and the value stays
+in that key's unit until `Section.si` is asked.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar
 
 from pydantic import (
     BaseModel,
     ConfigDict,
     Field,
+    GetJsonSchemaHandler,
     ModelWrapValidatorHandler,
+    PrivateAttr,
     ValidationError,
-    create_model,
     model_validator,
 )
-from pydantic_core import InitErrorDetails, PydanticCustomError
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError
 
 from des_cli.profiles_in.wording import did_you_mean, one_of, plain
 from des_cli.units import Unit, split_unit, suffixes
@@ -35,26 +38,29 @@ OMITTED: Any = None
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """A quantity that a section holds.
+    """A quantity that a section holds, as the annotation of its field.
 
     Parameters
     ----------
-    stem : str
-        The key without its unit.
     quantity : str
         As the unit table names it.
     title : str
         In words, for messages and the schema.
     required : bool
     others : tuple of str
-        Keys without a unit that may stand in its place.
+        Further keys that may stand in its place.
+    stem : str
+        The key without its unit; without it the name of the field.
+    described : bool
+        Whether the schema has the title.
     """
 
-    stem: str
     quantity: str
     title: str
-    required: bool = True
+    required: bool = False
     others: tuple[str, ...] = ()
+    stem: str = ""
+    described: bool = True
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -89,10 +95,51 @@ class Section(BaseModel):
     elsewhere: ClassVar[Mapping[str, str]] = {}
     """Keys that belong to another place, with what is said of them here."""
 
+    _measured: ClassVar[Mapping[str, Measure]] = {}
+    _fields: ClassVar[Mapping[str, str]] = {}
+    _given: dict[str, str] = PrivateAttr(default_factory=dict)
+
     @classmethod
-    def keys(cls) -> list[str]:
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        """Find the quantities among the fields, and the field of every key."""
+        measured = {}
+        for name, info in cls.model_fields.items():
+            for each in info.metadata:
+                if isinstance(each, Measure):
+                    measured[name] = replace(each, stem=each.stem or name.removesuffix("_"))
+        fields: dict[str, str] = {}
+        for name in cls.model_fields:
+            keys = measured[name].keys if name in measured else (name,)
+            # What is a field by itself is that field, whatever it may stand for.
+            own = cls.model_fields.keys() - measured.keys() - {name}
+            fields |= {key: name for key in keys if key not in own}
+        cls._measured, cls._fields, cls.measures = measured, fields, tuple(measured.values())
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Describe a property for every key instead of one for every field."""
+        schema = handler(core_schema)
+        found = handler.resolve_ref_schema(schema)
+        properties = found.get("properties", {})
+        found["properties"] = {
+            key: _property(key, properties[name], cls._measured.get(name))
+            for key, name in cls._fields.items()
+        }
+        exactly_one = [
+            {"oneOf": [{"required": [key]} for key in measure.keys]}
+            for measure in cls.measures
+            if measure.required
+        ]
+        if exactly_one:
+            found["allOf"] = exactly_one
+        return schema
+
+    @classmethod
+    def known_keys(cls) -> list[str]:
         """Return every key that the section knows."""
-        return list(cls.model_fields)
+        return list(cls._fields)
 
     @classmethod
     def measure(cls, stem: str) -> Measure:
@@ -101,14 +148,13 @@ class Section(BaseModel):
 
     def given_key(self, stem: str) -> str | None:
         """Return the key that gives a quantity, or None where it is not given."""
-        keys = self.measure(stem).keys
-        return next((key for key in keys if key in self.model_fields_set), None)
+        return next((key for key in self.measure(stem).keys if key in self._given), None)
 
     def given(self, stem: str) -> tuple[Any, Unit] | None:
         """Return what is given for a quantity, and its unit."""
         key = self.given_key(stem)
         unit = split_unit(key)[1] if key else None
-        return (getattr(self, key), unit) if key and unit else None
+        return (getattr(self, self._given[key]), unit) if key and unit else None
 
     def si(self, stem: str, default: float = 0.0) -> float:
         """Return a quantity in SI units and radians, or the default."""
@@ -118,14 +164,14 @@ class Section(BaseModel):
     def written(self, stem: str) -> str:
         """Return a number as the user gave it: ``from_s (5)``."""
         key = self.given_key(stem)
-        return f"{key} ({getattr(self, key):.12g})" if key else stem
+        return f"{key} ({getattr(self, self._given[key]):.12g})" if key else stem
 
     @model_validator(mode="wrap")
     @classmethod
     def _check_keys(cls, data: Any, handler: ModelWrapValidatorHandler[Section]) -> Section:
-        """Collect what is wrong with the keys together with what is wrong in the values."""
+        """Find the field of each key, and collect all that is wrong with keys and values."""
         if not isinstance(data, dict):
-            raise fault(f"must be a mapping with {_some(cls.keys())}")
+            raise fault(f"must be a mapping with {_some(cls.known_keys())}")
         errors = [
             InitErrorDetails(type=fault(words, of_key=True), loc=(key,), input=None)
             for key, words in _unknown_keys(cls, data)
@@ -134,65 +180,35 @@ class Section(BaseModel):
             InitErrorDetails(type=fault(words, ("",)), loc=(), input=None)
             for words in _measure_faults(cls, data)
         ]
-        known = {key: value for key, value in data.items() if key in cls.model_fields}
-        try:
-            section = handler(known)
-        except ValidationError as error:
-            errors += [_again(details) for details in error.errors(include_url=False)]
-            section = None
+        given = {key: cls._fields[key] for key in data if key in cls._fields}
+        keys = {name: key for key, name in given.items()}
+        # Of a quantity that is given twice the values are still to be checked, one by one.
+        doubled = [key for key, name in given.items() if keys[name] != key]
+        section = None
+        for further in ("", *doubled):
+            read = keys | ({given[further]: further} if further else {})
+            try:
+                section = handler({name: data[key] for name, key in read.items()})
+            except ValidationError as error:
+                found = [_again(details, read) for details in error.errors(include_url=False)]
+                errors += [each for each in found if not further or each["loc"][:1] == (further,)]
         if errors or section is None:
             raise ValidationError.from_exception_data(cls.__name__, errors)
+        section._given = given
         return section
 
 
-def measured(
-    name: str,
-    doc: str,
-    measures: Iterable[Measure],
-    kind: Any = Number,
-    /,
-    *,
-    base: type[Section] | None = None,
-    **fields: Any,
-) -> type[Section]:
-    """Make a section with a field for every unit of its quantities.
-
-    Parameters
-    ----------
-    name, doc : str
-    measures : iterable of Measure
-    kind : type
-        What a value may be.
-    base : type, optional
-        A section whose keys this one also has.
-    **fields
-        Further fields, as ``pydantic.create_model`` takes them.
-    """
-    measures = tuple(measures)
-    with_units: dict[str, Any] = {
-        key: (kind, Field(default=OMITTED, description=measure.title))
-        for measure in measures
-        for key in measure.keys
-        if key not in fields
-    }
-    create: Any = create_model  # too dynamic for the type checker
-    model = create(name, __base__=base or Section, __doc__=doc, **with_units, **fields)
-    model.measures = measures
-    exactly_one = [
-        {"oneOf": [{"required": [key]} for key in measure.keys]}
-        for measure in measures
-        if measure.required
-    ]
-    if exactly_one:
-        model.model_config["json_schema_extra"] = {"allOf": exactly_one}
-        model.model_rebuild(force=True)
-    section: type[Section] = model
-    return section
+def _property(key: str, schema: Any, measure: Measure | None) -> Any:
+    """Return the schema of a key from that of its field."""
+    if measure is None:
+        return schema
+    described = {"description": measure.title} if measure.described else {}
+    return schema | described | {"title": key.replace("_", " ").title()}
 
 
 def _unknown_keys(section: type[Section], data: dict[str, Any]) -> Iterable[tuple[str, str]]:
     for key in data:
-        if key in section.model_fields:
+        if key in section.known_keys():
             continue
         match = [measure for measure in section.measures if _tries(key, measure)]
         if key in section.elsewhere:
@@ -200,8 +216,8 @@ def _unknown_keys(section: type[Section], data: dict[str, Any]) -> Iterable[tupl
         elif match:
             yield key, f"{match[0].title} needs its unit in the key: {one_of(match[0].keys)}"
         else:
-            hint = did_you_mean(key, section.keys())
-            yield key, f"is not a key here{hint or f'; there are {_some(section.keys())}'}"
+            hint = did_you_mean(key, section.known_keys())
+            yield key, f"is not a key here{hint or f'; there are {_some(section.known_keys())}'}"
 
 
 def _measure_faults(section: type[Section], data: dict[str, Any]) -> Iterable[str]:
@@ -224,11 +240,11 @@ def _some(keys: Sequence[str], most: int = 12) -> str:
     return f"{words}, …" if len(keys) > most else words
 
 
-def _again(details: Any) -> InitErrorDetails:
-    """Turn a reported error back into one that can be raised with others."""
+def _again(details: Any, keys: Mapping[str, str]) -> InitErrorDetails:
+    """Turn a reported error of a field back into one of its key that can be raised with others."""
     kind: str | PydanticCustomError = details["type"]
     if kind == "profile":
         kind = PydanticCustomError("profile", "{words}", details["ctx"])
-    return InitErrorDetails(
-        type=kind, loc=details["loc"], input=details["input"], ctx=details.get("ctx", {})
-    )
+    name, *rest = details["loc"] or ("",)
+    loc = (keys.get(name, name), *rest) if details["loc"] else ()
+    return InitErrorDetails(type=kind, loc=loc, input=details["input"], ctx=details.get("ctx", {}))

@@ -15,14 +15,15 @@ from des_cli.profiles_in.profile_file import ProfileFile
 from des_cli.profiles_in.profile_yaml import parse_document, parse_settings
 from des_cli.profiles_in.reduction_section import read_reduction
 from des_cli.profiles_in.schema import ProfileSettings
+from des_cli.profiles_in.setting import AnySetting
 from des_cli.profiles_in.source import decode
 
 
 def load_variants(
     source: str | Path,
-    variants: Sequence[Sequence[str]],
+    variants: Sequence[Sequence[AnySetting]],
     *,
-    settings: Sequence[str] = (),
+    settings: Sequence[AnySetting] = (),
     columns: Mapping[str, str] | None = None,
     stdin: bytes | None = None,
     part: int | None = None,
@@ -35,8 +36,8 @@ def load_variants(
     ----------
     source, settings, columns, stdin, part, separator, decimal
         As of `load_profile`.
-    variants : sequence of sequence of str
-        At least one; ``--set`` strings of keys of ``reduction``, and of no others.
+    variants : sequence of sequence of str or Setting
+        At least one; settings of keys of ``reduction``, and of no others.
 
     Returns
     -------
@@ -67,7 +68,7 @@ def load_variants(
     return found
 
 
-def _fault(file: ProfileFile, settings: Sequence[str]) -> DesError | None:
+def _fault(file: ProfileFile, settings: Sequence[AnySetting]) -> DesError | None:
     """Return what is wrong with a reduction."""
     try:
         _parse_reduction(file, settings)
@@ -76,7 +77,7 @@ def _fault(file: ProfileFile, settings: Sequence[str]) -> DesError | None:
     return None
 
 
-def _parse_reduction(file: ProfileFile, settings: Sequence[str]) -> Reduction:
+def _parse_reduction(file: ProfileFile, settings: Sequence[AnySetting]) -> Reduction:
     """Return how a profile is to be reduced, of which nothing else is made."""
     document: ProfileSettings
     try:

@@ -107,6 +107,22 @@ class Node:
         return key_place if of_key else node.place
 
 
+def node_of(value: Any, place: str) -> Node:
+    """Return plain dictionaries, lists and scalars as a tree that all stands in one place.
+
+    Parameters
+    ----------
+    value : scalar, list or mapping
+    place : str
+    """
+    if isinstance(value, dict):
+        members = {str(key): node_of(member, place) for key, member in value.items()}
+        return Node(place, members, dict.fromkeys(members, place))
+    if isinstance(value, list):
+        return Node(place, [node_of(member, place) for member in value])
+    return Node(place, value)
+
+
 def path_text(path: Iterable[Step]) -> str:
     """Write a path as users do.
 

@@ -14,6 +14,7 @@ from des_cli.batch.source import Source, load_source_variants
 from des_cli.errors import DesError, ExitCode, Failure
 from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import TradePoint
+from des_cli.profiles_in.setting import AnySetting
 
 # What needs numpy is imported when a job runs, as in `batch`.
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ class PointPlan:
 
     Parameters
     ----------
-    settings : tuple of str
+    settings : tuple of str or Setting
         Further ``--set`` strings for the profile's reduction.
     control, swept, value
         What these ask for, to name the point by; empty for the baselines.
@@ -36,7 +37,7 @@ class PointPlan:
         r2 of the study's law, for the baselines.
     """
 
-    settings: tuple[str, ...]
+    settings: tuple[AnySetting, ...]
     control: Control = "scalar"
     swept: str = ""
     value: float = 0.0

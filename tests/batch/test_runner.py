@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from des_cli.batch import execution, runner
 from des_cli.batch.execution import run_job
@@ -143,6 +144,19 @@ def test_workers_have_one_blas_thread_each() -> None:
         assert executor is not None
         names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
         assert [executor.submit(os.getenv, name).result() for name in names] == ["1"] * 3
+
+
+def test_a_blas_that_is_loaded_already_has_one_thread_too() -> None:
+    def threads() -> set[int]:
+        return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+
+    with threadpool_limits(limits=2, user_api="blas"):
+        before = threads()
+        if not before:
+            pytest.skip("the BLAS of numpy here has no threads that can be counted")
+        with single_blas_thread():
+            assert threads() == {1}
+        assert threads() == before
 
 
 def test_the_number_of_threads_is_put_back(monkeypatch: pytest.MonkeyPatch) -> None:

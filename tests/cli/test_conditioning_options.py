@@ -6,6 +6,7 @@ import click
 import pytest
 
 from des_cli.cli.conditioning_options import conditioning_settings
+from des_cli.profiles_in.setting import Setting
 
 
 def test_each_option_is_a_setting() -> None:
@@ -17,13 +18,14 @@ def test_each_option_is_a_setting() -> None:
         "smooth": "2",
     }
     assert conditioning_settings(values) == (
-        "trim={from_s: 2, to_s: 30.5}",
-        "axes={p: x, q: -y, r: -z}",
-        "samples.euler=zyx",
-        "resample.step_s=0.02",
-        "smooth.cutoff_hz=2",
+        Setting("trim", {"from_s": 2, "to_s": 30.5}, "--trim 2 : 30.5"),
+        Setting("axes", {"p": "x", "q": "-y", "r": "-z"}, "--body-axes p=x, q=-y, r=-z"),
+        Setting("samples.euler", "zyx", "--euler ZYX"),
+        Setting("resample.step_s", 0.02, "--resample 0.02"),
+        Setting("smooth.cutoff_hz", 2, "--smooth 2"),
     )
-    assert conditioning_settings({"trim": ":3", "smooth": None}) == ("trim={to_s: 3}",)
+    (setting,) = conditioning_settings({"trim": ":3", "smooth": None})
+    assert setting.value == {"to_s": 3}
 
 
 @pytest.mark.parametrize(("key", "text"), [("trim", "5"), ("trim", ":"), ("body_axes", "x,-y,-z")])

@@ -1,7 +1,7 @@
 """The registry of options agrees with what it stands for."""
 
 import json
-from typing import get_args
+from typing import Any, get_args
 
 import click
 import pytest
@@ -10,6 +10,7 @@ from des_cli.batch.job import TableFormat
 from des_cli.cli.options import _REDUCTION, TABLE_FORMATS, reduction_settings
 from des_cli.cli.reduce import reduce
 from des_cli.model import profile
+from des_cli.profiles_in.setting import Setting
 from des_cli.runs_out import tables
 
 
@@ -42,27 +43,32 @@ def test_every_option_of_reduction_is_a_field_of_the_model() -> None:
     assert {key for key, _, _ in _REDUCTION} <= fields
 
 
-def test_reduction_options_become_settings_in_order() -> None:
+def settings_of(values: dict[str, Any]) -> list[tuple[str, Any]]:
+    return [(setting.path, setting.value) for setting in reduction_settings(values)]
+
+
+def test_reduction_options_become_typed_settings_in_order() -> None:
     values = {"r2": "1", "method": "zero", "r1": "0, 2, 0", "axes": None, "iterations": 3}
     assert reduction_settings(values) == (
-        "reduction.method=zero",
-        "reduction.r1=[0, 2, 0]",
-        "reduction.r2=1",
-        "reduction.iterations=3",
-        "reduction.limits=enforce",  # without limits the zero method jumps
+        Setting("reduction.method", "zero", "--method zero"),
+        Setting("reduction.r1", [0, 2, 0], "--r1 0, 2, 0"),
+        Setting("reduction.r2", 1, "--r2 1"),
+        Setting("reduction.iterations", 3, "--iterations 3"),
+        # without limits the zero method jumps
+        Setting("reduction.limits", "enforce", "--method zero"),
     )
 
 
 def test_a_budget_becomes_a_setting_inside_the_limits() -> None:
-    assert reduction_settings({"budget": ("0.05",)}) == (
-        "reduction.budget={joint_deviation_relative: 0.05}",
-        "reduction.limits=enforce",
-    )
+    assert settings_of({"budget": ("0.05",)}) == [
+        ("reduction.budget", {"joint_deviation_relative": 0.05}),
+        ("reduction.limits", "enforce"),
+    ]
     both = ("seat_g_rms_error_g = 0.1", "seat_rate_deviation_relative=10%")
-    assert reduction_settings({"budget": both, "limits": "warn"}) == (
-        "reduction.limits=warn",
-        "reduction.budget={seat_g_rms_error_g: 0.1, seat_rate_deviation_relative: 0.1}",
-    )
+    assert settings_of({"budget": both, "limits": "warn"}) == [
+        ("reduction.limits", "warn"),
+        ("reduction.budget", {"seat_g_rms_error_g": 0.1, "seat_rate_deviation_relative": 0.1}),
+    ]
     assert reduction_settings({"budget": (), "optimise": ()}) == ()
 
 
@@ -83,11 +89,11 @@ def test_a_metric_twice_and_a_percentage_of_what_is_no_share(
 
 def test_free_parameters_and_leads_become_settings() -> None:
     values = {"optimise": ("seat_yaw", "cab_start"), "lead_in": "1.5", "lead_out": "2"}
-    assert reduction_settings(values) == (
-        "reduction.optimise=[seat_yaw, cab_start]",
-        "reduction.lead_in_s=1.5",
-        "reduction.lead_out_s=2",
-    )
+    assert settings_of(values) == [
+        ("reduction.optimise", ["seat_yaw", "cab_start"]),
+        ("reduction.lead_in_s", 1.5),
+        ("reduction.lead_out_s", 2),
+    ]
 
 
 def test_options_of_free_joints_are_understood(invoke, small: str) -> None:
@@ -128,6 +134,24 @@ def test_a_budget_beside_weights_is_wrong_use(weights: dict[str, str]) -> None:
         reduction_settings({"budget": ("0.05",), **weights})
 
 
-def test_a_matrix_in_brackets_stays_as_it_is() -> None:
+def test_a_matrix_is_written_in_brackets() -> None:
     matrix = "[[2, 0, 0], [0, 2, 0], [0, 0, 2]]"
-    assert reduction_settings({"r1": matrix}) == (f"reduction.r1={matrix}",)
+    rows = [[2, 0, 0], [0, 2, 0], [0, 0, 2]]
+    assert settings_of({"r1": matrix}) == [("reduction.r1", rows)]
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (("--r2", "-1"), "--r2 -1: reduction.r2: must be greater than 0, is -1"),
+        (("--r1", "1,2"), "--r1 1,2: reduction.r1: must have at least 3 items, has 2"),
+        (("--trim", "2:1"), "--trim 2:1: trim: is for samples"),
+        (("--budget", "half"), "--budget half: reduction.budget.joint_deviation_relative: must be"),
+    ],
+)
+def test_a_message_names_the_option_and_not_what_stands_for_it(
+    invoke, small: str, options: tuple[str, str], line: str
+) -> None:
+    result = invoke("validate", small, *options)
+    assert result.exit_code == 3
+    assert any(each.startswith(line) for each in result.stderr.splitlines()), result.stderr

@@ -77,7 +77,7 @@ def test_a_column_of_clock_times_under_another_name_is_named_with_its_option() -
     text = "UTC,p_rad_s,q_rad_s,r_rad_s\n" + rows
     assert problems_of(text) == [
         "<stdin>:1: a column is missing: t_s, t_ms, t_us, t_ns or t_min; "
-        "UTC holds times of day: --column t=UTC reads them"
+        "UTC holds clock times: --column t=UTC reads them"
     ]
     t, _ = parse_samples(text, "x.csv", {"t": "UTC"})
     assert t.tolist() == [0.0, 0.5]
