@@ -17,7 +17,7 @@ from des_cli.reduction.budget import pose_budget, spend_budgets
 from des_cli.reduction.change import Change
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.free.method import find_free_motion
-from des_cli.reduction.free.problem import FreeTask
+from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.optimum import find_optimum
 from des_cli.reduction.problem import Problem, pose_problem
 from des_cli.reduction.report_sweep import sweep

@@ -42,8 +42,9 @@ from des_cli.reduction.executable import fit_executable
 from des_cli.reduction.free.inside import find_inside
 from des_cli.reduction.free.limit_rows import LimitRows
 from des_cli.reduction.free.method import GAP, TOLERANCE, find_free_motion
-from des_cli.reduction.free.problem import MARGIN, FreeTask, pose_motion
+from des_cli.reduction.free.problem import MARGIN, pose_motion
 from des_cli.reduction.free.program import MotionProgram
+from des_cli.reduction.free.task import FreeTask
 from des_cli.solver.barrier import Options, minimise
 from des_cli.solver.spline import SplineGrid
 from tests.support.bridge import peer_task

@@ -34,7 +34,7 @@ from des_cli.model.motion import Motion
 from des_cli.model.profile import Ends, Objective, Reduction
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free import method as free
-from des_cli.reduction.free.problem import FreeTask
+from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.limits import measure_peaks
 from tests.support.bridge import check, peer_task
 from tests.support.ipopt_spline import Answer, cpu_seconds, solve

@@ -13,7 +13,7 @@ from des_cli.model.metric import Budget
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.model.profile import Reduction
 from des_cli.reduction.free.method import find_free_motion
-from des_cli.reduction.free.problem import FreeTask
+from des_cli.reduction.free.task import FreeTask
 from des_cli.verify.claim import Claim
 from des_cli.verify.verify import verify
 from tests.reduction.conftest import make_cobra

@@ -18,8 +18,10 @@ from des_cli.model.profile import Axes
 from des_cli.model.solution import Iteration, Solution, Status
 from des_cli.reduction.change import Change
 from des_cli.reduction.executable import ExecutableSpline, sample_spline
-from des_cli.reduction.free.problem import AT_POINTS, FreeTask, in_ground_axes
+from des_cli.reduction.free.bounds import AT_POINTS
+from des_cli.reduction.free.problem import in_ground_axes
 from des_cli.reduction.free.program import MotionProgram
+from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.limits import find_occupant_violations
 from des_cli.solver.barrier import Outcome, Step
 from des_cli.units import percent

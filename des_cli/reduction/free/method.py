@@ -36,17 +36,12 @@ from des_cli.reduction.executable import (
 )
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free.answers import Answers, FreeResult, StepLog
+from des_cli.reduction.free.bounds import AT_POINTS
 from des_cli.reduction.free.inside import find_inside
 from des_cli.reduction.free.limit_rows import Tie
-from des_cli.reduction.free.problem import (
-    AT_POINTS,
-    SEAT_ANGLES,
-    FreeTask,
-    cross_coupling,
-    pose_motion,
-    turned_seat,
-)
+from des_cli.reduction.free.problem import cross_coupling, pose_motion
 from des_cli.reduction.free.program import MotionProgram
+from des_cli.reduction.free.task import SEAT_ANGLES, FreeTask, turned_seat
 from des_cli.reduction.free.ties import tie_reversals
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.solver.barrier import Options, Outcome, minimise

@@ -1,29 +1,21 @@
-"""From a profile to the program of a free motion: references, budgets, bounds, ends."""
+"""The program of a free motion on a grid: its cost, budgets, bounds and ends."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
 
-from des_cli.kinematics.attitude import rotation
-from des_cli.kinematics.chain import Chain, chain_of
+from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.coriolis import coriolis
-from des_cli.kinematics.response import respond_on, with_shortfall
-from des_cli.kinematics.seat import PILOT_SIGNS
 from des_cli.kinematics.seat_turn import SeatTurn, seat_turns
-from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import SeatForms, SeatMotion, seat_forms
 from des_cli.model.arrays import Floats
-from des_cli.model.machine import JOINTS, JointLimits, Machine, OccupantBounds, Seat
 from des_cli.model.metric import (
     ANGULAR_ACCELERATION_DEVIATION,
     ANGULAR_ACCELERATION_ERROR,
-    ANGULAR_ACCELERATION_PEAK_RATIO,
     ANGULAR_ACCELERATION_RMS_RATIO,
-    ATTITUDE_ERROR,
     JOINT_DEVIATION,
     JOINT_DEVIATION_SQUARED,
     METRICS,
@@ -34,27 +26,19 @@ from des_cli.model.metric import (
     Budget,
     MetricKey,
 )
-from des_cli.model.motion import Motion, Record, Shortfall
-from des_cli.model.profile import Ends as EndsName
-from des_cli.model.profile import Profile, Reduction
-from des_cli.model.response import Response
+from des_cli.model.profile import Reduction
+from des_cli.reduction.free.bounds import AT_POINTS, occupant_bounds, point_bound
 from des_cli.reduction.free.ground_cross import GroundCross
 from des_cli.reduction.free.limit_rows import LimitRows, Tie
-from des_cli.reduction.free.local_bounds import (
-    AttitudeBound,
-    ComponentBound,
-    LocalBound,
-    NormBound,
-    OnsetBound,
-)
 from des_cli.reduction.free.motion_problem import FreeSeat, MotionProblem
-from des_cli.reduction.free.requested import Requested, is_rough
+from des_cli.reduction.free.requested import Requested
+from des_cli.reduction.free.task import SEAT_ANGLES, FreeTask, turned_seat
 from des_cli.reduction.free.terms import JointBudget, Quantity, Term
 from des_cli.reduction.free.unknowns import SEAT_VARIABLES
 from des_cli.reduction.free.windows import JOINTS as COMPONENTS
 from des_cli.reduction.free.windows import Windows
-from des_cli.reduction.reference import sample_motion, sample_sides
-from des_cli.solver.spline import Ends, SplineGrid
+from des_cli.reduction.reference import sample_motion
+from des_cli.solver.spline import SplineGrid
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
 BLEND = 0.1
@@ -75,9 +59,6 @@ whoever differentiates a table of positions twice."""
 UNIT_ACCELERATION = 1.0
 """Acceleration [rad/s^2] that the regularisation takes for a joint without a limit."""
 
-AT_POINTS: frozenset[MetricKey] = frozenset({ATTITUDE_ERROR, ANGULAR_ACCELERATION_PEAK_RATIO})
-"""Metrics that are a largest value over time: bounds at each point, and no integrals."""
-
 _INTEGRALS: Mapping[MetricKey, Quantity] = MappingProxyType(
     {
         SEAT_RATE_DEVIATION: "rate",
@@ -89,141 +70,6 @@ _INTEGRALS: Mapping[MetricKey, Quantity] = MappingProxyType(
     }
 )
 """What of the ride a metric is the integral of."""
-
-SEAT_ANGLES = ("seat_yaw", "seat_pitch")
-
-
-def unlimited() -> tuple[JointLimits, ...]:
-    """Return limits that are none."""
-    return tuple(JointLimits(np.inf, np.inf, np.inf) for _ in JOINTS)
-
-
-@dataclass(frozen=True)
-class FreeTask:
-    """A free motion to find: what is asked, and what it may cost.
-
-    Parameters
-    ----------
-    machine : Machine
-    seat : Seat
-    reduction : Reduction
-    reference : Motion
-        What the motion begins from and what budgets are measured against: the record, or
-        what conditioning made of it.
-    limits : tuple of JointLimits
-        That hold for the motion.
-    room : float
-        Share of each bound on what the occupant gets that is left to the table.
-    shortfall : Shortfall, optional
-        What is asked for beyond the reference.
-    response : Response, optional
-        As asked for, where it is known already.
-    record : Record, optional
-        What conditioning began from, where the reference is another motion.
-    most : tuple of Budget
-        What of fidelity to the record is allowed, where it counts beside the reference.
-    round_base : bool
-        Whether the reference is the table of the executable base itself.
-    """
-
-    machine: Machine
-    seat: Seat
-    reduction: Reduction
-    reference: Motion
-    limits: tuple[JointLimits, ...]
-    room: float = 0.0
-    shortfall: Shortfall | None = None
-    response: Response | None = None
-    record: Record | None = None
-    most: tuple[Budget, ...] = ()
-    round_base: bool = False
-
-    @classmethod
-    def of(
-        cls,
-        profile: Profile,
-        reference: Motion,
-        shortfall: Shortfall | None = None,
-    ) -> FreeTask:
-        """Take what a profile asks for, or what conditioning made of it."""
-        enforced = profile.reduction.limits == "enforce"
-        limits = profile.machine.limits if enforced else unlimited()
-        return cls(
-            machine=profile.machine,
-            seat=profile.seat,
-            reduction=profile.reduction,
-            reference=reference,
-            limits=limits,
-            shortfall=shortfall,
-        ).with_response()
-
-    def requested(self) -> Response:
-        """Return what is asked of the seat, at both ends of every interval."""
-        if self.response is not None:
-            return self.response
-        response = respond_on(self.chain, self.machine.gravity, self.reference)
-        return with_shortfall(response, self.shortfall)
-
-    def rough(self, grid: SplineGrid) -> bool:
-        """Return whether what is asked is faster than the knots of a grid."""
-        return not self.round_base and is_rough(self.requested(), self.reference.t, grid.step)
-
-    @property
-    def held(self) -> Record:
-        """What budgets hold against."""
-        return Record(self.reference, self.shortfall)
-
-    @property
-    def recorded(self) -> Record:
-        """What the profile asks for."""
-        return self.record or self.held
-
-    def around(self, table: Motion) -> FreeTask:
-        """Return the task whose budgets hold against the executable base, of this table."""
-        return replace(
-            self,
-            reference=table,
-            shortfall=None,
-            response=None,
-            record=self.recorded,
-            round_base=True,
-        ).with_response()
-
-    def with_response(self) -> FreeTask:
-        """Return the task with what it would evaluate for every grid."""
-        return replace(self, response=self.requested())
-
-    @property
-    def chain(self) -> Chain:
-        """The chain with the seat as the profile fixes it."""
-        return chain_of(self.machine, self.seat)
-
-    @property
-    def occupant(self) -> OccupantBounds:
-        """The bounds on what is felt, where limits are enforced."""
-        enforced = self.reduction.limits == "enforce"
-        return self.machine.occupant if enforced else OccupantBounds()
-
-    @property
-    def ends(self) -> Ends:
-        """What deviations from a motion that starts as the reference does keep."""
-        name: EndsName = self.reduction.ends
-        held = np.array([joint in self.reduction.hold for joint in JOINTS])
-        freed = np.array([f"{joint}_start" in self.reduction.optimise for joint in JOINTS])
-        both = np.full(len(JOINTS), name == "match-both")
-        return Ends(
-            start_value=~freed,
-            start_rate=np.full(len(JOINTS), name != "free"),
-            end_value=both,
-            end_rate=both | (name == "match-rates"),
-            held=held,
-        )
-
-    @property
-    def base_ends(self) -> Ends:
-        """What the executable motion keeps of the reference: the start, and the same ends."""
-        yes = np.ones(len(JOINTS), dtype=bool)
-        return replace(self.ends, start_value=yes, held=~yes)
 
 
 def pose_motion(
@@ -267,11 +113,11 @@ def pose_motion(
         smoothing=REGULARISATION / (grid.duration * unit**2),
         local=[
             *(
-                _point_bound(task, times, angle, b)
+                point_bound(task, times, angle, b)
                 for b in reduction.budget
                 if b.metric in AT_POINTS
             ),
-            *_occupant_bounds(task.occupant, grid, task.room),
+            *occupant_bounds(task.occupant, grid, task.room),
         ],
         seat=_free_seat(task),
         ground=measures.ground(task),
@@ -389,48 +235,6 @@ def _root(weight: Floats) -> Floats:
     return np.asarray((vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
 
 
-def _point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) -> LocalBound:
-    """Return a budget that bounds every point."""
-    if budget.metric == ATTITUDE_ERROR:
-        return _attitude_bound(task, times, angle, budget.most)
-    peak = np.max(np.linalg.norm(task.requested().seat_angular_acceleration, axis=-1))
-    return NormBound("acceleration", budget.most * max(float(peak), UNFELT_ANGULAR_ACCELERATION))
-
-
-def _attitude_bound(task: FreeTask, times: Floats, angle: Floats, most_deg: float) -> AttitudeBound:
-    coefficient = task.chain.transform.coefficient[..., :3, :3]
-    attitude = TrigPolynomial(coefficient.reshape(3, 3, 3, 9))
-    requested = attitude(angle)
-    if task.shortfall is not None:
-        missing = task.shortfall.attitude
-        sides = np.stack([missing[:-1], missing[1:]], axis=1)
-        turn = rotation(sample_sides(task.reference.t, sides, times))
-        requested = (requested.reshape(-1, 3, 3) @ turn).reshape(-1, 9)
-    return AttitudeBound(attitude, requested.T, float(np.radians(most_deg)))
-
-
-def _occupant_bounds(occupant: OccupantBounds, grid: SplineGrid, room: float) -> list[LocalBound]:
-    """Return the machine's bounds on what is felt, drawn in by some room."""
-    found: list[LocalBound] = []
-    directions, bounds = [], []
-    per_g = np.diag(PILOT_SIGNS) / STANDARD_GRAVITY_M_S2
-    for axis, (least, most) in enumerate((occupant.gx, occupant.gy, occupant.gz)):
-        for bound, sign in ((most, 1.0), (-least, -1.0)):
-            if np.isfinite(bound):
-                directions.append(sign * per_g[axis])
-                bounds.append(bound)
-    if bounds:
-        scale = np.maximum(np.abs(bounds), 1.0)
-        found.append(ComponentBound(np.array(directions), np.array(bounds) - room * scale, scale))
-    if np.isfinite(occupant.angular_acceleration):
-        found.append(NormBound("acceleration", (1.0 - room) * occupant.angular_acceleration))
-    if np.isfinite(occupant.g_onset):
-        apart = grid.step / np.sqrt(3.0)  # between the two points of an interval
-        rate = per_g / ((1.0 - room) * occupant.g_onset * apart)
-        found.append(OnsetBound(np.concatenate([rate, -rate])))
-    return found
-
-
 def _free_seat(task: FreeTask) -> FreeSeat | None:
     names = [name for name in SEAT_ANGLES if name in task.reduction.optimise]
     present = seat_turns(task.machine, task.seat)
@@ -445,14 +249,3 @@ def _free_seat(task: FreeTask) -> FreeSeat | None:
         return forms, [turns[name] for name in names]
 
     return FreeSeat(len(names), at, SEAT_WEIGHT)
-
-
-def turned_seat(task: FreeTask, change: Floats) -> Seat:
-    """Return the seat with its free angles changed [rad], in the chain's order."""
-    present = seat_turns(task.machine, task.seat)
-    names = [name for name in present if name in task.reduction.optimise]
-    by_name = dict(zip(names, change.tolist(), strict=True))
-    return Seat(
-        yaw=task.seat.yaw + by_name.get("seat_yaw", 0.0),
-        pitch=task.seat.pitch + by_name.get("seat_pitch", 0.0),
-    )

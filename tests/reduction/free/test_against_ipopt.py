@@ -20,8 +20,9 @@ from des_cli.model.metric import Budget
 from des_cli.model.profile import Reduction
 from des_cli.reduction.executable import ExecutableSpline, fit_executable
 from des_cli.reduction.free.inside import find_inside
-from des_cli.reduction.free.problem import FreeTask, pose_motion, turned_seat
+from des_cli.reduction.free.problem import pose_motion
 from des_cli.reduction.free.program import MotionProgram
+from des_cli.reduction.free.task import FreeTask, turned_seat
 from des_cli.solver.barrier import Options, Outcome, minimise
 from des_cli.solver.spline import SplineGrid
 from tests.support.bridge import check, peer_task
