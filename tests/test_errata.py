@@ -14,8 +14,8 @@ import pytest
 
 from des_cli import load_profile, reduce_profile
 from des_cli.kinematics.chain import chain_of, joint_axes, linear_jacobian, seat_rotation, transform
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.kinematics.coriolis import coriolis, coriolis_derivatives
-from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.orientation import body_jacobian, smallest_singular_value
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES

@@ -20,7 +20,7 @@ from des_cli.profiles_in.g_commands import STEP, sampled_g
 from des_cli.profiles_in.g_schema import G_STEMS
 from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
 from des_cli.profiles_in.interpolant import body_rates_of_samples
-from des_cli.profiles_in.positions import joint_commands_of_samples
+from des_cli.profiles_in.rates_of_positions import joint_commands_of_samples
 from des_cli.profiles_in.record_checks import check_magnitudes, check_times, tell_doubtful_units
 from des_cli.profiles_in.sample_times import sample_times
 from des_cli.profiles_in.wording import plain

@@ -1,1 +1,1 @@
-"""From a desired motion to the nearest one with less Coriolis, and its verification."""
+"""From a desired motion to one near it with less cross-coupling."""

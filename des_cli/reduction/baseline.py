@@ -14,7 +14,7 @@ from des_cli.kinematics.chain import Chain
 from des_cli.kinematics.coriolis import coriolis
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.reduction.problem import Problem
-from des_cli.reduction.report_sweep import RUNAWAY
+from des_cli.reduction.study_law import RUNAWAY
 from des_cli.study.backward_forward import adjoint_along, factors_of, follow
 
 RAN_AWAY = 100.0

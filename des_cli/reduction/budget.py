@@ -16,9 +16,9 @@ import numpy as np
 from des_cli.model.metric import ANGULAR_ACCELERATION_PEAK_RATIO, ATTITUDE_ERROR, METRICS, Budget
 from des_cli.model.solution import Solution
 from des_cli.reduction.attitude_rows import AttitudeRows
+from des_cli.reduction.budget_measures import measure_of
 from des_cli.reduction.coarse import grids, refine
-from des_cli.reduction.felt_measures import SeatAccelerationRows
-from des_cli.reduction.measures import measure_of
+from des_cli.reduction.felt_budget_measures import SeatAccelerationRows
 from des_cli.reduction.optimum import FAR, NEAR, best_of, make_solution
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.search import TOLERANCE, Search

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.motion import DesiredMotion
 from des_cli.model.profile import GCommand, Profile
 from des_cli.reduction.g_profile import follow_g

@@ -20,8 +20,8 @@ from des_cli.model.arrays import Floats
 from des_cli.model.solution import Solution
 from des_cli.reduction.coarse import grids, refine
 from des_cli.reduction.problem import Problem
-from des_cli.reduction.report_sweep import sweep
 from des_cli.reduction.search import COARSE, TOLERANCE, Search
+from des_cli.reduction.study_law import sweep
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.interior import Outcome
 

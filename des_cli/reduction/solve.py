@@ -20,8 +20,8 @@ from des_cli.reduction.free.method import find_free_motion
 from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.optimum import find_optimum
 from des_cli.reduction.problem import Problem, pose_problem
-from des_cli.reduction.report_sweep import sweep
 from des_cli.reduction.search import Report, Search
+from des_cli.reduction.study_law import sweep
 from des_cli.reduction.zero import find_zero, pose_zero
 
 

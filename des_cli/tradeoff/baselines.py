@@ -22,7 +22,7 @@ from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.limits import find_violations
 from des_cli.reduction.problem import Problem, pose_problem
-from des_cli.reduction.report_sweep import sweep
+from des_cli.reduction.study_law import sweep
 from des_cli.results.coriolis import coriolis_metrics
 from des_cli.results.felt import felt_metrics
 from des_cli.results.joints import joint_metrics

@@ -14,7 +14,7 @@ from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
-from des_cli.verify import free, study
+from des_cli.verify import factors, free_optimality
 from des_cli.verify.budgets import check_budgets
 from des_cli.verify.claim import Claim
 from des_cli.verify.ends import (
@@ -24,10 +24,10 @@ from des_cli.verify.ends import (
     check_integral,
     check_times,
 )
+from des_cli.verify.factors_optimality import check_optimality
 from des_cli.verify.leads import check_leads
 from des_cli.verify.limits import check_limits
 from des_cli.verify.occupant import check_occupant
-from des_cli.verify.study_optimality import check_optimality
 
 
 def verify(claim: Claim) -> tuple[Check, ...]:
@@ -79,19 +79,19 @@ def _of_free(claim: Claim) -> list[Check]:
         *check_factors(claim),
         *_occupant(claim),
         *check_budgets(claim),
-        *free.check_cost(claim),
-        *free.check_optimality(claim.reduced),
+        *free_optimality.check_cost(claim),
+        *free_optimality.check_optimality(claim.reduced),
     ]
 
 
 def _of_factors(claim: Claim, problem: Problem) -> list[Check]:
     reduction = claim.reduction
     checks = [
-        *study.check_dynamics(claim, problem),
-        *study.check_cost(claim, problem),
+        *factors.check_dynamics(claim, problem),
+        *factors.check_cost(claim, problem),
     ]
     if reduction.method == "zero":
-        checks.append(study.check_zero(claim, problem))
+        checks.append(factors.check_zero(claim, problem))
     elif reduction.algorithm == "optimum":
         checks += check_budgets(claim)
         if problem.jacobian == "desired":

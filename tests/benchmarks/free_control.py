@@ -30,7 +30,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
 from des_cli import load_profile
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
@@ -42,7 +42,7 @@ from des_cli.reduction.executable import fit_executable
 from des_cli.reduction.free.inside import find_inside
 from des_cli.reduction.free.limit_rows import LimitRows
 from des_cli.reduction.free.method import GAP, TOLERANCE, find_free_motion
-from des_cli.reduction.free.problem import MARGIN, pose_motion
+from des_cli.reduction.free.pose import MARGIN, pose_motion
 from des_cli.reduction.free.program import MotionProgram
 from des_cli.reduction.free.task import FreeTask
 from des_cli.solver.barrier import Options, minimise

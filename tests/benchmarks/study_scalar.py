@@ -28,7 +28,7 @@ import numpy as np
 
 from des_cli import load_profile
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.motion import Motion
 from des_cli.reduction.optimum import find_optimum
 from des_cli.reduction.problem import Problem

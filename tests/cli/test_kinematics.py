@@ -19,7 +19,7 @@ import pytest
 from des_cli.cli import kinematics as module
 from des_cli.cli.kinematics import kinematics
 from des_cli.cli.state_options import QUANTITIES
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.machine import JOINTS
 from des_cli.profiles_in.load import load_profile
 from des_cli.runs_out.state_tables import state_columns

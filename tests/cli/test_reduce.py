@@ -7,7 +7,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.profiles_in.load import load_profile
 from des_cli.reduction.limits import find_violations
 from tests.support.run_files import HEADER, RUN_FILES, csv_rows, metrics_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.kinematics.noise import suggest_smoothing
 from des_cli.kinematics.smoothing import smooth_command
 from des_cli.model.machines import DES

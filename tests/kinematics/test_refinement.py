@@ -8,7 +8,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.spatial.transform import Rotation
 
 from des_cli.kinematics.chain import chain_of, seat_rotation
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.kinematics.orientation import body_jacobian
 from des_cli.kinematics.refinement import TOLERANCE
 from des_cli.model.arrays import Floats

@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 
 from des_cli.kinematics.chain import seat_rotation
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.kinematics.coriolis import coriolis
-from des_cli.kinematics.desired import make_desired
 from des_cli.kinematics.response import respond
 from des_cli.kinematics.seat import pilot_g
 from des_cli.model.machine import Machine, Seat

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from des_cli.errors import ProfileError
 from des_cli.kinematics.chain import chain_of, seat_rotation
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.profile import BodyRates, Profile
 from des_cli.profiles_in.load import load_profile
 

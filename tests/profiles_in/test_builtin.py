@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.kinematics.response import respond
 from des_cli.model.profile import BodyRates, JointCommands, Reduction
 from des_cli.profiles_in.builtin import builtin_profiles

@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from des_cli.errors import ProfileError
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.profile import BodyRates, JointCommands, Profile
 from des_cli.profiles_in.load import load_profile
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from des_cli.errors import ProfileError
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.gaps import find_gaps
 from des_cli.model.profile import BodyRates, Profile
 from des_cli.profiles_in.load import count_parts, load_profile

@@ -17,7 +17,7 @@ from des_cli.reduction.baseline import (
     objective_reduction,
     weighted_energy,
 )
-from des_cli.reduction.report_sweep import sweep
+from des_cli.reduction.study_law import sweep
 from des_cli.reduction.transcription import Transcription
 
 

@@ -11,7 +11,7 @@ from des_cli.model.machines import DES
 from des_cli.reduction.baseline import joint_deviation, weighted_energy
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.limits import find_violations
-from des_cli.reduction.report_sweep import sweep
+from des_cli.reduction.study_law import sweep
 
 pytestmark = pytest.mark.slow
 

@@ -13,8 +13,8 @@ from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.limits import find_violations
 from des_cli.reduction.search import Search
 from des_cli.reduction.zero import find_zero, pose_zero
+from des_cli.verify.factors import cross_of
 from des_cli.verify.felt import SeatChain
-from des_cli.verify.study import cross_of
 from tests.support.claims import failed_of_factors
 
 BB3 = np.array([False, True, False])

@@ -16,7 +16,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
 from des_cli.model.motion import Motion
-from des_cli.reduction.free.problem import MARGIN, REGULARISATION
+from des_cli.reduction.free.pose import MARGIN, REGULARISATION
 from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.reference import sample_motion
 from des_cli.solver.spline import SplineGrid

@@ -15,7 +15,7 @@ from des_cli.model.metric import Budget
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Reduction
 from des_cli.reduction.executable import ExecutableSpline, fit_executable
-from des_cli.reduction.free.problem import pose_motion
+from des_cli.reduction.free.pose import pose_motion
 from des_cli.reduction.free.program import MotionProgram
 from des_cli.reduction.free.task import FreeTask, unlimited
 from des_cli.solver.spline import SplineGrid

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.profiles_in.load import load_profile
 from des_cli.tradeoff.baselines import CONSTANT_FACTORS

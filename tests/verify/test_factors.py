@@ -12,8 +12,8 @@ from des_cli.model.metric import Budget
 from des_cli.model.profile import Reduction
 from des_cli.reduction.baseline import joint_deviation
 from des_cli.reduction.executable import nearest_executable
-from des_cli.reduction.report_sweep import sweep
 from des_cli.reduction.solve import solve
+from des_cli.reduction.study_law import sweep
 from tests.support.claims import checks_of_factors, failed_of_factors
 
 WEIGHTS = Reduction(limits="warn", budget=())

@@ -19,7 +19,7 @@ from des_cli.model.solution import Iteration, Solution, Status
 from des_cli.reduction.change import Change
 from des_cli.reduction.executable import ExecutableSpline, sample_spline
 from des_cli.reduction.free.bounds import AT_POINTS
-from des_cli.reduction.free.problem import in_ground_axes
+from des_cli.reduction.free.pose import in_ground_axes
 from des_cli.reduction.free.program import MotionProgram
 from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.limits import find_occupant_violations

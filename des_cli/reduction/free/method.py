@@ -39,7 +39,7 @@ from des_cli.reduction.free.answers import Answers, FreeResult, StepLog
 from des_cli.reduction.free.bounds import AT_POINTS
 from des_cli.reduction.free.inside import find_inside
 from des_cli.reduction.free.limit_rows import Tie
-from des_cli.reduction.free.problem import cross_coupling, pose_motion
+from des_cli.reduction.free.pose import cross_coupling, pose_motion
 from des_cli.reduction.free.program import MotionProgram
 from des_cli.reduction.free.task import SEAT_ANGLES, FreeTask, turned_seat
 from des_cli.reduction.free.ties import tie_reversals

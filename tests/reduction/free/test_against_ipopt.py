@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 from des_cli import load_profile
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.arrays import Floats
 from des_cli.model.metric import Budget
 from des_cli.model.profile import Reduction
 from des_cli.reduction.executable import ExecutableSpline, fit_executable
 from des_cli.reduction.free.inside import find_inside
-from des_cli.reduction.free.problem import pose_motion
+from des_cli.reduction.free.pose import pose_motion
 from des_cli.reduction.free.program import MotionProgram
 from des_cli.reduction.free.task import FreeTask, turned_seat
 from des_cli.solver.barrier import Options, Outcome, minimise

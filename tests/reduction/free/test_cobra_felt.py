@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from des_cli import load_profile
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.metric import Budget
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Profile, Reduction

@@ -21,9 +21,9 @@ from des_cli.verify.budgets import (
     spent_budgets,
 )
 from des_cli.verify.claim import Claim
+from des_cli.verify.factors import cost_of, integrated
 from des_cli.verify.felt import Felt
 from des_cli.verify.multipliers import least_residual
-from des_cli.verify.study import cost_of, integrated
 
 OPTIMALITY_TOLERANCE = 1e-5
 """Largest slope of the cost along a test direction, relative to the largest slope

@@ -26,7 +26,7 @@ from des_cli.model.metric import (
     SEAT_RATE_DEVIATION,
     MetricKey,
 )
-from des_cli.reduction.felt_measures import (
+from des_cli.reduction.felt_budget_measures import (
     SeatAccelerationDeviation,
     SeatAccelerationSize,
     SeatGDeviation,

@@ -13,8 +13,8 @@ from des_cli.kinematics.response import respond
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
-from des_cli.reduction.felt_measures import SeatAccelerationRows
-from des_cli.reduction.measures import measure_of
+from des_cli.reduction.budget_measures import measure_of
+from des_cli.reduction.felt_budget_measures import SeatAccelerationRows
 from des_cli.reduction.transcription import Transcription
 
 BUDGET = 0.3

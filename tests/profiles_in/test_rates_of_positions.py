@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from des_cli.profiles_in.positions import rates_of_positions
+from des_cli.profiles_in.rates_of_positions import rates_of_positions
 
 UNEVEN = np.array([0.0, 0.1, 0.4, 0.45, 1.0, 1.7, 1.75, 2.6])
 

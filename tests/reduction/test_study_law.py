@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from des_cli.reduction.baseline import joint_deviation, weighted_energy
-from des_cli.reduction.report_sweep import sweep
+from des_cli.reduction.study_law import sweep
 
 RPM = 2.0 * np.pi / 60.0
 

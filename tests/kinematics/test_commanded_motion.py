@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from des_cli.kinematics.attitude import rotation
 from des_cli.kinematics.chain import chain_of, joint_axes, seat_rotation
-from des_cli.kinematics.desired import make_desired
+from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.kinematics.orientation import damped_inverse_rates
 from des_cli.kinematics.response import respond, respond_as_requested
 from des_cli.model.machine import Seat

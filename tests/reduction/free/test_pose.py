@@ -16,7 +16,7 @@ from des_cli.model.profile import Reduction
 from des_cli.reduction.executable import ExecutableSpline, sample_spline
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free.bounds import AT_POINTS
-from des_cli.reduction.free.problem import cross_coupling, in_ground_axes
+from des_cli.reduction.free.pose import cross_coupling, in_ground_axes
 from des_cli.reduction.free.task import turned_seat
 from tests.support.free_motions import fit, program_of, smooth, sway, task_of
 
