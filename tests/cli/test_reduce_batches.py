@@ -21,6 +21,7 @@ def test_a_batch_stops_at_the_first_failure(invoke, write_profile, tmp_path) -> 
     assert not (tmp_path / "runs" / "good").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_keep_going_runs_the_others(invoke, write_profile, tmp_path, jobs: str) -> None:
     names = ("first", "bad", "last")

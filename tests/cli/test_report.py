@@ -11,6 +11,7 @@ def two_runs(invoke, write_profile) -> None:
         assert invoke("-q", "reduce", write_profile(name).name, "--no-plots").exit_code == 0
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("two_runs")
 def test_without_arguments_every_run_under_runs(invoke, tmp_path: Path) -> None:
     result = invoke("report")
@@ -22,6 +23,7 @@ def test_without_arguments_every_run_under_runs(invoke, tmp_path: Path) -> None:
     assert invoke("report").exit_code == 0, "the page is replaced"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("two_runs")
 def test_named_runs_to_a_file_or_stdout(invoke, tmp_path: Path) -> None:
     assert invoke("report", "runs/one", "-o", "page.html").exit_code == 0
@@ -31,6 +33,7 @@ def test_named_runs_to_a_file_or_stdout(invoke, tmp_path: Path) -> None:
     assert result.stdout != invoke("report", "runs/two", "-o", "-").stdout
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("two_runs")
 def test_a_run_named_twice_is_on_the_page_once(invoke) -> None:
     result = invoke("report", "runs", "runs/one", "-o", "page.html")

@@ -213,6 +213,7 @@ def test_one_profile_on_a_terminal_names_its_stages(
     assert b"\x1b" not in plain.stderr
 
 
+@pytest.mark.slow
 def test_several_profiles_on_a_terminal_are_counted(
     on_terminal: OnTerminal, write_profile: Callable[..., Path], command
 ) -> None:
@@ -226,6 +227,7 @@ def test_several_profiles_on_a_terminal_are_counted(
     assert "  1 of 2 profiles done" in said
 
 
+@pytest.mark.slow
 def test_the_points_of_a_sweep_are_counted(
     on_terminal: OnTerminal, write_profile: Callable[..., Path], command
 ) -> None:

@@ -30,6 +30,7 @@ def executable(cobra):
     return nearest_executable(DES, cobra(250))[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jerk", [False, True])
 def test_one_component_per_joint_inside_the_limits(cobra, pose, table_1, jerk):
     machine = DES if jerk else table_1

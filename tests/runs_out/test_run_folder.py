@@ -40,6 +40,7 @@ def stored(tmp_path: Path, synthetic_run: MakeRun) -> Path:
     return folder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("control", "adjoint", "figures"),
     [("scalar", 3, 8), ("per-joint", 3, 8), ("per-joint", 0, 7), ("free", 0, 6)],
@@ -77,12 +78,14 @@ def test_the_manifest_lists_every_file_with_size_and_digest(stored: Path) -> Non
         assert entry["sha256"] == hashlib.sha256(files[name]).hexdigest()
 
 
+@pytest.mark.slow
 def test_the_same_run_gives_the_same_bytes_anywhere(tmp_path: Path, synthetic_run: MakeRun) -> None:
     write_run(synthetic_run(), tmp_path / "one")
     write_run(synthetic_run(), tmp_path / "two" / "deeper")
     assert tree(tmp_path / "one") == tree(tmp_path / "two" / "deeper")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("plots", [False, True])
 def test_a_folder_that_holds_a_run_is_refused_or_replaced(
     stored: Path, synthetic_run: MakeRun, plots: bool
@@ -95,6 +98,7 @@ def test_a_folder_that_holds_a_run_is_refused_or_replaced(
     assert len(read_run(stored).trajectory["t_s"]) == 51
 
 
+@pytest.mark.slow
 def test_replacing_removes_what_the_new_run_does_not_have(
     stored: Path, synthetic_run: MakeRun
 ) -> None:
@@ -103,6 +107,7 @@ def test_replacing_removes_what_the_new_run_does_not_have(
     assert sorted(path.name for path in stored.iterdir()) == FILES
 
 
+@pytest.mark.slow
 def test_foreign_files_are_refused_and_never_destroyed(
     tmp_path: Path, synthetic_run: MakeRun
 ) -> None:

@@ -57,12 +57,14 @@ def test_a_curve_reads_its_profile_once_and_makes_its_motion_once(calls: Counter
     assert calls == {"parse_file": 1, "find_desired": 1}
 
 
+@pytest.mark.slow
 def test_a_record_is_smoothed_once(calls: Counter[str]) -> None:
     for job in jobs_of(SMOOTH):
         run_point(job)
     assert calls == {"parse_file": 1, "find_desired": 2}  # as recorded, and smoothed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", [Source("cobra", COARSE), SMOOTH], ids=lambda s: s.name)
 def test_a_point_is_the_same_with_a_motion_of_its_own_and_elsewhere(source: Source) -> None:
     for job in jobs_of(source):

@@ -136,6 +136,7 @@ def test_the_page_asks_for_nothing_from_elsewhere(stored: Callable[..., StoredRu
     assert 'name="viewport"' in text
 
 
+@pytest.mark.slow
 def test_the_same_runs_give_the_same_page(stored: Callable[..., StoredRun]) -> None:
     assert render_report([stored()]) == render_report([stored()])
 

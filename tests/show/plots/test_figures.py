@@ -16,6 +16,7 @@ from tests.support.pictures import BLUE, GREY, area, picture
 MakeRun = Callable[..., Run]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("control", ["scalar", "per-joint"])
 def test_every_figure_shows_its_curves(synthetic_run: MakeRun, control: str) -> None:
     run = synthetic_run(101, control=control)
@@ -31,6 +32,7 @@ def test_every_figure_shows_its_curves(synthetic_run: MakeRun, control: str) -> 
     assert len(widths) == 1
 
 
+@pytest.mark.slow
 def test_equal_runs_give_equal_bytes(synthetic_run: MakeRun) -> None:
     first, second = (
         draw_plots(trajectory_columns(run), run.metrics)
@@ -39,6 +41,7 @@ def test_equal_runs_give_equal_bytes(synthetic_run: MakeRun) -> None:
     assert first == second
 
 
+@pytest.mark.slow
 def test_the_users_matplotlibrc_changes_nothing(synthetic_run: MakeRun) -> None:
     import matplotlib
 
@@ -51,6 +54,7 @@ def test_the_users_matplotlibrc_changes_nothing(synthetic_run: MakeRun) -> None:
         assert matplotlib.rcParams["font.size"] == 30
 
 
+@pytest.mark.slow
 def test_a_figure_is_of_its_run(synthetic_run: MakeRun) -> None:
     run, other = synthetic_run(), synthetic_run(control="per-joint")
     ours = draw_plots(trajectory_columns(run), run.metrics)
@@ -92,6 +96,7 @@ def test_pyplot_stays_out(synthetic_run: MakeRun) -> None:
     assert "matplotlib.pyplot" not in sys.modules
 
 
+@pytest.mark.slow
 def test_no_version_and_no_time_is_in_the_file(synthetic_run: MakeRun) -> None:
     run = synthetic_run(11)
     for png in draw_plots(trajectory_columns(run), run.metrics).values():
