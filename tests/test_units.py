@@ -40,12 +40,14 @@ def test_suffixes_stand_in_the_order_of_the_table() -> None:
     assert suffixes("mass") == ()
 
 
-@pytest.mark.parametrize("share", [9.94e-3, 9.96e-3, 0.01, 0.9994, 0.9996, 1.0, 12.345])
+@pytest.mark.parametrize(
+    ("share", "decimals"),
+    [(9.94e-3, 2), (9.96e-3, 1), (0.01, 1), (0.9994, 1), (0.9996, 0), (1.0, 0), (12.345, 0)],
+)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_percent_is_within_half_of_its_last_digit(share: float, sign: float) -> None:
-    text = percent(sign * share)
-    number, sign_of_percent = text.split(" ")
-    assert sign_of_percent == "%"
-    decimals = len(number.partition(".")[2])
-    assert decimals == (0 if abs(float(number)) >= 100 else 1 if abs(float(number)) >= 1 else 2)
+def test_percent_has_the_decimals_of_the_number_as_it_is_rounded(
+    share: float, decimals: int, sign: float
+) -> None:
+    number, _, mark = percent(sign * share).partition(" ")
+    assert (len(number.partition(".")[2]), mark) == (decimals, "%")
     assert math.isclose(float(number), 100 * sign * share, abs_tol=0.501 * 10**-decimals)
