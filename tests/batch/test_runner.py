@@ -1,59 +1,23 @@
 """Jobs are data, and run the same wherever an Executor takes them."""
 
 import os
-import pickle
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from threadpoolctl import threadpool_info, threadpool_limits
 
-from des_cli.batch import execution, runner
+from des_cli.batch import runner
 from des_cli.batch.execution import run_job
 from des_cli.batch.job import Job, JobResult, Output
-from des_cli.batch.pool import available_cpus, local_executor, single_blas_thread
+from des_cli.batch.pool import local_executor
 from des_cli.batch.runner import run_tasks
-from des_cli.batch.source import Source, require_distinct_names
-from des_cli.errors import ExitCode, ProfileError, UsageError
+from des_cli.batch.source import Source
+from des_cli.errors import ExitCode, ProfileError
 
 COARSE = ("time.step_s=0.25",)
 COBRA = Source("cobra", settings=COARSE)
 TO_STDOUT = Output("-", out_is_parent=False, table_format="csv")
-
-
-def test_a_job_and_its_result_cross_process_boundaries(tmp_path: Path) -> None:
-    out = str(tmp_path / "x.csv")
-    job = Job(COBRA, Output(out, out_is_parent=False, table_format="csv"))
-    result = run_job(pickle.loads(pickle.dumps(job)))
-    assert (result.exit_code, result.name, result.state) == (0, "cobra", "reduced")
-    assert pickle.loads(pickle.dumps(result)) == result
-
-
-def test_result_carries_what_a_person_needs(tmp_path: Path) -> None:
-    result = run_job(Job(COBRA, TO_STDOUT))
-    assert result.table is not None
-    assert result.table.startswith(b"t_s,arm_rpm,fork_deg,cab_deg\n")
-    assert result.objective == ("bb3",)
-    assert result.metrics is not None
-    assert result.log
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_rejected_profile_is_a_result_and_not_an_exception() -> None:
-    result = run_job(Job(Source("cobra", settings=("time.step_s=-1",))))
-    assert (result.exit_code, result.state) == (ExitCode.PROFILE, "failed")
-    assert result.complaints
-
-
-def test_a_bug_is_a_result_with_a_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(source: Source) -> None:
-        raise ZeroDivisionError("by nought")
-
-    monkeypatch.setattr(execution, "load_source", broken)
-    result = run_job(Job(Source("cobra")))
-    assert result.exit_code == ExitCode.BUG
-    assert "ZeroDivisionError" in result.traceback
 
 
 class Pretend:
@@ -132,58 +96,6 @@ def test_a_worker_that_dies_fails_its_task(tmp_path: Path) -> None:
     assert result.exit_code == ExitCode.FILE
     assert result.complaints == (f"{begun}: {runner.LOST}",)
     assert "worker process died" in runner.LOST
-
-
-def test_one_worker_needs_no_pool() -> None:
-    with local_executor(1) as executor:
-        assert executor is None
-
-
-def test_workers_have_one_blas_thread_each() -> None:
-    with local_executor(2) as executor:
-        assert executor is not None
-        names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-        assert [executor.submit(os.getenv, name).result() for name in names] == ["1"] * 3
-
-
-def test_a_blas_that_is_loaded_already_has_one_thread_too() -> None:
-    def threads() -> set[int]:
-        return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
-
-    with threadpool_limits(limits=2, user_api="blas"):
-        before = threads()
-        if not before:
-            pytest.skip("the BLAS of numpy here has no threads that can be counted")
-        with single_blas_thread():
-            assert threads() == {1}
-        assert threads() == before
-
-
-def test_the_number_of_threads_is_put_back(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
-    with single_blas_thread():
-        assert os.environ["OMP_NUM_THREADS"] == os.environ["MKL_NUM_THREADS"] == "1"
-    assert os.environ["OMP_NUM_THREADS"] == "7"
-    assert "MKL_NUM_THREADS" not in os.environ
-
-
-@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="no affinity on this system")
-def test_cpus_are_counted_by_affinity() -> None:
-    before = os.sched_getaffinity(0)
-    try:
-        os.sched_setaffinity(0, {min(before)})
-        assert available_cpus() == 1
-    finally:
-        os.sched_setaffinity(0, before)
-    assert available_cpus() == len(before)
-
-
-def test_names_that_occur_twice_are_refused_together() -> None:
-    with pytest.raises(UsageError) as caught:
-        require_distinct_names([Source("cobra"), Source("nowhere.yaml"), COBRA])
-    assert [problem.where for problem in caught.value.complaints] == ["cobra"]
-    require_distinct_names([Source("cobra"), Source("nowhere.yaml")])
 
 
 def test_a_dask_client_is_one_more_executor() -> None:
