@@ -9,10 +9,11 @@ cd "$(dirname "$0")/.."
 lock() {
     out=$1
     shift
-    # The build backend is locked too: the project installs without isolation.
+    # The build backend is locked too: the project installs without isolation. Extras stay in the names:
+    # where a package needs coverage[toml], pip does not take a pinned `coverage` for it.
     printf 'hatchling\neditables\n' |
         uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
-            --no-header --no-annotate --no-emit-index-url --output-file "$out" "$@" \
+            --no-header --no-annotate --no-strip-extras --no-emit-index-url --output-file "$out" "$@" \
             pyproject.toml - >/dev/null
 }
 
