@@ -28,20 +28,8 @@ from des_cli import load_profile, reduce_profile
 from des_cli.model.arrays import Floats
 from des_cli.model.run import Run
 from des_cli.runs_out.tables import trajectory_columns
-from des_cli.show.plots.canvas import (
-    BEFORE,
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    VERMILION,
-    Pen,
-    draw,
-    note,
-    png,
-    sheet,
-    style,
-)
+from des_cli.show.plots.canvas import draw, note, png, sheet, style
+from des_cli.show.plots.pens import BEFORE, BLUE, GREEN, GREY, INK, VERMILION, Pen
 
 AZIMUTH = np.arange(0.0, 180.1, 7.5)
 """Of the arm at the start [deg]; BB3 only changes its sign after half a turn."""

@@ -34,6 +34,10 @@ ANGULAR_ACCELERATION_RMS_RATIO: Final = "seat_angular_acceleration_rms_ratio"
 ANGULAR_ACCELERATION_PEAK_RATIO: Final = "seat_angular_acceleration_peak_ratio"
 ATTITUDE_ERROR: Final = "attitude_error_max_deg"
 
+PEAK_METRICS: frozenset[MetricKey] = frozenset({ATTITUDE_ERROR, ANGULAR_ACCELERATION_PEAK_RATIO})
+"""Metrics that are a largest value over time: a budget on one bounds every instant, and no
+integral."""
+
 
 @dataclass(frozen=True, slots=True)
 class Metric:

@@ -18,6 +18,7 @@ from des_cli.model.metric import (
     FACTOR_DEVIATION,
     JOINT_DEVIATION,
     JOINT_DEVIATION_SQUARED,
+    PEAK_METRICS,
     SEAT_G_DEVIATION,
     SEAT_G_ERROR,
     SEAT_RATE_DEVIATION,
@@ -85,9 +86,6 @@ INTEGRALS: Mapping[str, Integral] = MappingProxyType(
     }
 )
 
-AT_SAMPLES = frozenset({ATTITUDE_ERROR, ANGULAR_ACCELERATION_PEAK_RATIO})
-"""Metrics that are a largest value over time."""
-
 
 def check_budgets(claim: Claim) -> list[Check]:
     """Measure what the reduction spends of every budget, and all that is off of the record."""
@@ -129,7 +127,7 @@ def spent_budgets(claim: Claim) -> list[Budget]:
     return [
         budget
         for budget in claim.reduction.budget
-        if budget.metric not in AT_SAMPLES
+        if budget.metric not in PEAK_METRICS
         and measure(claim, budget.metric, claim.after) > share * budget.most
     ]
 
@@ -144,7 +142,7 @@ def measure(claim: Claim, metric: str, felt: Felt) -> float:
     felt : Felt
         At the states of the motion.
     """
-    if metric in AT_SAMPLES:
+    if metric in PEAK_METRICS:
         return float(np.max(at_states(claim, metric, felt)))
     if metric == FACTOR_DEVIATION:
         return mean_square_one_minus_p(claim, claim.solution.control)

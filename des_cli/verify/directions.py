@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.machine import JOINTS
-from des_cli.verify.budgets import AT_SAMPLES, at_states
+from des_cli.model.metric import PEAK_METRICS
+from des_cli.verify.budgets import at_states
 from des_cli.verify.claim import Claim
 from des_cli.verify.ends import STANDSTILL
 from des_cli.verify.limits import magnitudes
@@ -156,7 +157,7 @@ def _free(claim: Claim) -> Flags:
             steep = steepness(occupant, claim.modified, claim.after)
             free &= _at_samples(np.tile(steep < -near, 2))[:, None]
     for budget in claim.reduction.budget:
-        if budget.metric in AT_SAMPLES:
+        if budget.metric in PEAK_METRICS:
             values = at_states(claim, budget.metric, claim.after)
             free &= _at_samples(values < (1.0 - near) * budget.most)[:, None]
     if claim.reduction.control == "per-joint":

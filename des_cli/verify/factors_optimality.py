@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from des_cli.model.arrays import Flags, Floats
-from des_cli.model.metric import FACTOR_DEVIATION, Budget
+from des_cli.model.metric import FACTOR_DEVIATION, PEAK_METRICS, Budget
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.reduction.problem import Problem
 from des_cli.verify.budgets import (
-    AT_SAMPLES,
     at_states,
     integrand,
     mean_square_one_minus_p,
@@ -138,7 +137,7 @@ def _free(claim: Claim, problem: Problem) -> Flags:
             free[first : len(free) - 2 + first] &= ~sharp
         free &= ~_now_or_later(np.abs(motion.angle) > TIGHT * angle)
     for budget in claim.reduction.budget:
-        if budget.metric in AT_SAMPLES:
+        if budget.metric in PEAK_METRICS:
             tight = at_states(claim, budget.metric, claim.after) > TIGHT * budget.most
             held = np.zeros(shape[0], dtype=bool)
             held[:-1] = tight[: len(tight) // 2]

@@ -12,13 +12,12 @@ from des_cli.kinematics.coriolis import coriolis
 from des_cli.kinematics.response import respond_on
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
-from des_cli.model.metric import METRICS, Budget, MetricKey
+from des_cli.model.metric import METRICS, PEAK_METRICS, Budget, MetricKey
 from des_cli.model.motion import Motion, Record, integrate_sides
 from des_cli.model.profile import Axes
 from des_cli.model.solution import Iteration, Solution, Status
 from des_cli.reduction.change import Change
 from des_cli.reduction.executable import ExecutableSpline, sample_spline
-from des_cli.reduction.free.bounds import AT_POINTS
 from des_cli.reduction.free.pose import in_ground_axes
 from des_cli.reduction.free.program import MotionProgram
 from des_cli.reduction.free.task import FreeTask
@@ -191,7 +190,7 @@ class Answers:
         """Say which budgets the limits alone exceed, or which bounds."""
         task = self.task
         values = program.values(np.zeros(program.size))
-        budgets = [b for b in task.reduction.budget if b.metric not in AT_POINTS]
+        budgets = [b for b in task.reduction.budget if b.metric not in PEAK_METRICS]
         over = [
             f"{METRICS[b.metric].label} {np.sqrt(value) * b.most:.3g} instead of {b.most:.3g}"
             for b, value in zip(budgets, values.budgets, strict=True)

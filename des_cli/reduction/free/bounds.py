@@ -10,11 +10,9 @@ from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import OccupantBounds
 from des_cli.model.metric import (
-    ANGULAR_ACCELERATION_PEAK_RATIO,
     ATTITUDE_ERROR,
     UNFELT_ANGULAR_ACCELERATION,
     Budget,
-    MetricKey,
 )
 from des_cli.reduction.free.local_bounds import (
     AttitudeBound,
@@ -27,9 +25,6 @@ from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.reference import sample_sides
 from des_cli.solver.spline import SplineGrid
 from des_cli.units import STANDARD_GRAVITY_M_S2
-
-AT_POINTS: frozenset[MetricKey] = frozenset({ATTITUDE_ERROR, ANGULAR_ACCELERATION_PEAK_RATIO})
-"""Metrics that are a largest value over time: bounds at each point, and no integrals."""
 
 
 def point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) -> LocalBound:

@@ -22,7 +22,7 @@ from des_cli.kinematics.seat_turn import seat_turns
 from des_cli.kinematics.twist import seat_forms
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Seat
-from des_cli.model.metric import SEAT_RATE_DEVIATION, Budget, MetricKey
+from des_cli.model.metric import PEAK_METRICS, SEAT_RATE_DEVIATION, Budget, MetricKey
 from des_cli.model.motion import Motion, Record
 from des_cli.model.profile import Reduction
 from des_cli.model.solution import Iteration
@@ -36,7 +36,6 @@ from des_cli.reduction.executable import (
 )
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free.answers import Answers, FreeResult, StepLog
-from des_cli.reduction.free.bounds import AT_POINTS
 from des_cli.reduction.free.inside import find_inside
 from des_cli.reduction.free.limit_rows import Tie
 from des_cli.reduction.free.pose import cross_coupling, pose_motion
@@ -404,7 +403,7 @@ MOST_SHARE = 1e3
 def _drawn_in(budgets: Sequence[Budget]) -> list[Budget]:
     """Return budgets for a coarse grid, whose points see less of a largest value."""
     return [
-        replace(b, most=b.most * (1.0 - COARSE_ROOM)) if b.metric in AT_POINTS else b
+        replace(b, most=b.most * (1.0 - COARSE_ROOM)) if b.metric in PEAK_METRICS else b
         for b in budgets
     ]
 

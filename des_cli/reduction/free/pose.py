@@ -19,6 +19,7 @@ from des_cli.model.metric import (
     JOINT_DEVIATION,
     JOINT_DEVIATION_SQUARED,
     METRICS,
+    PEAK_METRICS,
     SEAT_G_DEVIATION,
     SEAT_G_ERROR,
     SEAT_RATE_DEVIATION,
@@ -27,7 +28,7 @@ from des_cli.model.metric import (
     MetricKey,
 )
 from des_cli.model.profile import Reduction
-from des_cli.reduction.free.bounds import AT_POINTS, occupant_bounds, point_bound
+from des_cli.reduction.free.bounds import occupant_bounds, point_bound
 from des_cli.reduction.free.ground_cross import GroundCross
 from des_cli.reduction.free.limit_rows import LimitRows, Tie
 from des_cli.reduction.free.motion_problem import FreeSeat, MotionProblem
@@ -107,7 +108,7 @@ def pose_motion(
         base=base,
         forms=forms,
         cost=measures.cost(reduction),
-        budgets=[measures.budget(b) for b in reduction.budget if b.metric not in AT_POINTS],
+        budgets=[measures.budget(b) for b in reduction.budget if b.metric not in PEAK_METRICS],
         rows=LimitRows(grid, base, task.limits, task.ends, MARGIN, ties),
         ends=task.ends,
         smoothing=REGULARISATION / (grid.duration * unit**2),
@@ -115,7 +116,7 @@ def pose_motion(
             *(
                 point_bound(task, times, angle, b)
                 for b in reduction.budget
-                if b.metric in AT_POINTS
+                if b.metric in PEAK_METRICS
             ),
             *occupant_bounds(task.occupant, grid, task.room),
         ],

@@ -10,7 +10,6 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 import matplotlib
@@ -24,41 +23,14 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from des_cli.model.arrays import Floats
+from des_cli.show.plots.pens import AXIS, FAINT, INK, NOTE, VERMILION, ZERO, Pen
 from des_cli.show.plots.thinning import thin
-
-# Okabe and Ito's palette: distinct to the colour-blind, and in grey by its dashes.
-GREY, BLUE, VERMILION, GREEN = "#767676", "#0072B2", "#D55E00", "#009E73"
-INK, FAINT = "#262626", "#E3E3E3"
 
 WIDTH, LEFT, RIGHT, TOP, BOTTOM, GAP = 9.0, 0.85, 0.2, 0.55, 0.52, 0.3
 _DPI = 150
 
 # Keys of matplotlib's defaults that choose a backend or a window, not a look.
 _NOT_LOOKS = ("backend", "interactive", "toolbar", "webagg", "tk.", "savefig.directory")
-
-
-@dataclass(frozen=True, slots=True)
-class Pen:
-    """How a curve is drawn, and what the legend calls it."""
-
-    label: str
-    color: str
-    dashes: Any = "-"
-    width: float = 1.5
-    zorder: float = 3.0
-    marker: str = ""
-
-
-DASHES = (0, (5, 2.2))
-BEFORE = Pen("before", GREY, DASHES, 1.3, 2.5)
-AFTER = Pen("after", BLUE)
-DESIRED = Pen("desired", GREY, DASHES, 1.3, 2.5)
-MODIFIED = Pen("modified", BLUE)
-JOINT_PENS = (
-    Pen("arm", BLUE),
-    Pen("fork", VERMILION, (0, (6, 1.5))),
-    Pen("cab", GREEN, (0, (2.5, 1.2))),
-)
 
 
 @contextmanager
@@ -72,7 +44,7 @@ def style() -> Iterator[None]:
     looks |= {
         "font.family": "DejaVu Sans",
         "font.size": 9.0,
-        "axes.edgecolor": "#9A9A9A",
+        "axes.edgecolor": AXIS,
         "axes.labelcolor": INK,
         "axes.labelsize": 9.0,
         "axes.linewidth": 0.7,
@@ -83,8 +55,8 @@ def style() -> Iterator[None]:
         "grid.color": FAINT,
         "grid.linewidth": 0.7,
         "text.color": INK,
-        "xtick.color": "#9A9A9A",
-        "ytick.color": "#9A9A9A",
+        "xtick.color": AXIS,
+        "ytick.color": AXIS,
         "xtick.labelcolor": INK,
         "ytick.labelcolor": INK,
         "xtick.labelsize": 8.5,
@@ -199,7 +171,7 @@ def draw(
         )
     axes.set_ylabel(label)
     axes.set_xlim(t[0], t[-1])
-    axes.axhline(0.0, color="#C4C4C4", linewidth=0.8, zorder=1)
+    axes.axhline(0.0, color=ZERO, linewidth=0.8, zorder=1)
     set_span(axes, [values for _, values in curves], floor)
     axes.yaxis.set_major_locator(MaxNLocator(nbins=5, min_n_ticks=3))
     formatter = ScalarFormatter(useOffset=False)
@@ -219,7 +191,7 @@ def set_span(axes: Axes, values: Sequence[Floats], floor: float) -> None:
 def note(panel: Axes, words: str) -> None:
     """Write a few words above the right end of a panel."""
     # no mathematics: a stranger's words may hold dollar signs
-    look: dict[str, Any] = {"fontsize": 8, "color": "#5A5A5A", "parse_math": False}
+    look: dict[str, Any] = {"fontsize": 8, "color": NOTE, "parse_math": False}
     panel.set_title(words, loc="right", pad=3, **look)
 
 

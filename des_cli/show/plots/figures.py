@@ -19,23 +19,8 @@ from des_cli.model.coriolis import COMPONENTS, ComponentKey
 from des_cli.model.machine import JOINTS
 from des_cli.model.metrics import Metrics
 from des_cli.results.reading import read_metrics
-from des_cli.show.plots.canvas import (
-    AFTER,
-    BEFORE,
-    DASHES,
-    DESIRED,
-    GREY,
-    JOINT_PENS,
-    MODIFIED,
-    Pen,
-    draw,
-    note,
-    png,
-    set_span,
-    sheet,
-    stamp,
-    style,
-)
+from des_cli.show.plots.canvas import draw, note, png, set_span, sheet, stamp, style
+from des_cli.show.plots.pens import AFTER, BEFORE, DASHES, DESIRED, GREY, JOINT_PENS, MODIFIED, Pen
 from des_cli.show.plots.ride import felt, limits
 from des_cli.show.plots.standing import budget_words, change_words, status_words
 from des_cli.show.plots.weighted import weighted_component

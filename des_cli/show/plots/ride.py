@@ -13,7 +13,8 @@ from des_cli.model.arrays import Floats
 from des_cli.model.loads import Driven
 from des_cli.model.machine import JOINTS
 from des_cli.model.metrics import Metrics
-from des_cli.show.plots.canvas import AFTER, BEFORE, DESIRED, MODIFIED, Pen, draw, note, sheet
+from des_cli.show.plots.canvas import draw, note, sheet
+from des_cli.show.plots.pens import AFTER, BEFORE, BEYOND, DESIRED, MODIFIED, WITHIN, Pen
 from des_cli.show.words import FIGURE
 
 Columns: TypeAlias = Mapping[str, Floats]
@@ -25,7 +26,6 @@ _DRIVEN: tuple[tuple[str, Driven, str], ...] = (
     ("rad_s3", "jerk", "rad/s³"),
 )
 
-_BAND, _BEYOND = "#EAF3EA", "#F7E3DA"
 _ROOM = 1.15
 _NEAR = 3.0  # the ordinate reaches to the limit where that is no more than so many peaks
 
@@ -63,7 +63,7 @@ def felt(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
 def limits(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
     """Draw acceleration and jerk of each joint inside the machine's limits."""
     title = "Acceleration and jerk of the joints, and their limits"
-    band = Pen("within the limit", _BAND, width=7.0)
+    band = Pen("within the limit", WITHIN, width=7.0)
     figure, axes = sheet(title, [band, DESIRED, MODIFIED], 3, 2, height=1.7)
     for i, joint in enumerate(JOINTS):
         for j, (suffix, name, unit) in enumerate(_DRIVEN):
@@ -90,9 +90,9 @@ def _shade(panel: Axes, bound: float | None, values: list[Floats]) -> None:
         reach = _ROOM * max(bound, largest)
         panel.set_ylim(-reach, reach)
         least, most = -reach, reach
-    panel.axhspan(-bound, bound, color=_BAND, linewidth=0.0, zorder=0.5)
-    panel.axhspan(bound, max(most, bound), color=_BEYOND, linewidth=0.0, zorder=0.5)
-    panel.axhspan(min(least, -bound), -bound, color=_BEYOND, linewidth=0.0, zorder=0.5)
+    panel.axhspan(-bound, bound, color=WITHIN, linewidth=0.0, zorder=0.5)
+    panel.axhspan(bound, max(most, bound), color=BEYOND, linewidth=0.0, zorder=0.5)
+    panel.axhspan(min(least, -bound), -bound, color=BEYOND, linewidth=0.0, zorder=0.5)
     panel.set_ylim(least, most)
 
 

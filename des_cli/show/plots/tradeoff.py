@@ -18,18 +18,8 @@ from des_cli.model.metric import (
     SEAT_RATE_DEVIATION,
 )
 from des_cli.model.tradeoff import TradePoint
-from des_cli.show.plots.canvas import (
-    BLUE,
-    DASHES,
-    GREEN,
-    GREY,
-    INK,
-    VERMILION,
-    Pen,
-    png,
-    sheet,
-    style,
-)
+from des_cli.show.plots.canvas import png, sheet, style
+from des_cli.show.plots.pens import BLUE, DASHES, GREEN, GREY, INK, NOTE, VERMILION, ZERO, Pen
 from des_cli.units import percent
 
 FREE = Pen("free", GREEN, (0, (2.5, 1.2)), marker="D")
@@ -82,7 +72,7 @@ def draw_tradeoff(points: Sequence[TradePoint], about: str) -> bytes:
     with style():
         figure = _figure(points, title)
         shown = about if len(about) <= _LONGEST else f"{about[: _LONGEST - 1]}…"
-        noted = figure.axes[0].set_title(shown, loc="right", fontsize=8, color="#5A5A5A", pad=3)
+        noted = figure.axes[0].set_title(shown, loc="right", fontsize=8, color=NOTE, pad=3)
         noted.set_parse_math(False)
         return png(figure, f"{title}: {about}")
 
@@ -147,7 +137,7 @@ def _scale(axes: Axes, drawn: Sequence[tuple[Pen, list[TradePoint]]], abscissa: 
     plain = FuncFormatter(lambda value, _: f"{value:g}".replace("-", "−"))
     axes.xaxis.set_major_formatter(plain)
     axes.yaxis.set_major_formatter(plain)
-    axes.axhline(0.0, color="#C4C4C4", linewidth=0.8, zorder=1)
+    axes.axhline(0.0, color=ZERO, linewidth=0.8, zorder=1)
 
 
 def _draw(axes: Axes, pen: Pen, curve: Sequence[TradePoint], abscissa: str) -> None:

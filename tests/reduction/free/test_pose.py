@@ -11,11 +11,11 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond_on
 from des_cli.model.machine import OccupantBounds, Seat
 from des_cli.model.machines import DES
+from des_cli.model.metric import PEAK_METRICS
 from des_cli.model.motion import Shortfall
 from des_cli.model.profile import Reduction
 from des_cli.reduction.executable import ExecutableSpline, sample_spline
 from des_cli.reduction.fidelity import Deviation
-from des_cli.reduction.free.bounds import AT_POINTS
 from des_cli.reduction.free.pose import cross_coupling, in_ground_axes
 from des_cli.reduction.free.task import turned_seat
 from tests.support.free_motions import fit, program_of, smooth, sway, task_of
@@ -54,7 +54,7 @@ def test_budgets_are_their_metrics_on_the_table(metric):
     share = deviation.value(metric) / MOST[metric]
     if metric == "joint_deviation_relative_squared":
         assert values.budgets[0] == pytest.approx(share, rel=5e-3)
-    elif metric in AT_POINTS:
+    elif metric in PEAK_METRICS:
         assert values.budgets.size == 0
         # the points lie between the samples: a peak is a little higher
         assert np.sqrt(values.local.max()) == pytest.approx(share, rel=3e-2)
@@ -87,8 +87,8 @@ def test_budgets_are_against_all_that_is_asked_for(metric):
     ]
     assert shares[0] != pytest.approx(shares[1], rel=3e-2)
     values = program.values(x)
-    found = values.local.max() if metric in AT_POINTS else values.budgets[0]
-    assert np.sqrt(found) == pytest.approx(shares[0], rel=3e-2 if metric in AT_POINTS else 1e-2)
+    found = values.local.max() if metric in PEAK_METRICS else values.budgets[0]
+    assert np.sqrt(found) == pytest.approx(shares[0], rel=3e-2 if metric in PEAK_METRICS else 1e-2)
 
 
 @pytest.mark.parametrize("axes", ["seat", "report"])

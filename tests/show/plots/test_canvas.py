@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from des_cli.model.arrays import Floats
-from des_cli.show.plots.canvas import AFTER, BEFORE, draw, sheet, style
+from des_cli.show.plots.canvas import draw, sheet, style
+from des_cli.show.plots.pens import AFTER, BEFORE
 
 
 def limits_of(values: Floats, floor: float) -> tuple[float, float]:
