@@ -26,6 +26,7 @@ from des_cli.study.closed_forms import (
     report_jacobian,
     seat_turn,
 )
+from tests.support.cobra import cobra
 
 SEAT = Seat(np.pi / 2, 0.0)
 CHAIN = chain_of(DES, SEAT)
@@ -259,20 +260,10 @@ def test_a_single_sweep_gives_the_studys_ranking_and_the_optimum_another() -> No
 def _euler_sweep(step: float) -> tuple[float, float]:
     """(42)-(47) with Euler's rule throughout: reduction of BB3, squared relative deviation."""
     t = np.arange(0.0, 10.0 + step / 2, step)
-    first = t < 5.0
-    arm = np.where(first, 8.8 - 0.66 * t, 5.5 + 0.66 * (t - 5.0)) * 2 * np.pi / 60
-    fork = -np.pi / 3 * np.pi / 5 * np.sin(np.pi * t / 5)
-    cab = np.where(first, -1.0, 1.0) * np.radians(2.5)
-    rate = np.stack([arm, fork, cab], axis=1)
-    turned = np.concatenate([[0.0], step * np.cumsum(arm[:-1])])
-    angle = np.stack(
-        [
-            turned,
-            -np.pi / 3 * (1 - np.cos(np.pi * t / 5)),
-            np.radians(np.where(first, 30 - 2.5 * t, 5 + 2.5 * t)),
-        ],
-        axis=1,
-    )
+    angle, rate, _ = cobra(t)
+    arm, fork, cab = rate.T
+    turned = step * np.cumsum(arm[:-1])
+    angle[:, 0] = np.concatenate([[0.0], turned])
     before = closed_form_coriolis(angle, rate)
     (s1, c1), (s2, c2) = ((np.sin(angle[:, i]), np.cos(angle[:, i])) for i in (0, 1))
     by_arm, by_fork = -before[:, 0], cab * (fork * c1 * c2 - arm * s1 * s2)

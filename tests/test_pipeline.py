@@ -16,6 +16,7 @@ from des_cli.model.motion import integrate_sides
 from des_cli.model.profile import BodyRates, JointCommands, Profile, Reduction
 from des_cli.model.run import Check
 from des_cli.pipeline import reduce_profile
+from tests.support.cobra import cobra_intervals
 
 STUDY = Reduction(
     control="scalar",
@@ -30,15 +31,12 @@ STUDY = Reduction(
 def cobra(intervals=250, **reduction):
     """The Cobra of (34)-(37) with the study's weights; its cab's rate steps at 5 s."""
     t = np.linspace(0.0, 10.0, intervals + 1)
-    s = t - 5.0
-    fork = -np.pi / 3.0 * (1.0 - np.cos(np.pi * t / 5.0))
-    fork_rate = -np.pi / 3.0 * np.pi / 5.0 * np.sin(np.pi * t / 5.0)
-    cab_rate = np.radians(2.5) * np.where(s[:-1] < -1e-9, -1.0, 1.0)
+    angle, start, end = cobra_intervals(t)
     command = JointCommands(
-        arm_rate=(5.5 + 0.66 * np.abs(s)) * 2.0 * np.pi / 60.0,
-        position=np.stack([fork, np.radians(17.5 + 2.5 * np.abs(s))], axis=1),
-        rate_start=np.stack([fork_rate[:-1], cab_rate], axis=1),
-        rate_end=np.stack([fork_rate[1:], cab_rate], axis=1),
+        arm_rate=np.append(start[:, 0], end[-1, 0]),
+        position=angle[:, 1:],
+        rate_start=start[:, 1:],
+        rate_end=end[:, 1:],
     )
     return Profile("cobra", t, command, DES, reduction=replace(STUDY, **reduction))
 

@@ -17,6 +17,7 @@ from des_cli.kinematics.response import respond, respond_as_requested
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.profile import BodyRates, JointCommands, Profile
+from tests.support.cobra import cobra
 
 RATE_LIMIT = np.array([limit.rate for limit in DES.limits])
 RPM = 2.0 * np.pi / 60.0
@@ -26,17 +27,6 @@ def body_jacobian(angle):
     """The body-axis Jacobian in closed form at the study's seat, (3, 3)."""
     (_, s2, s3), (_, c2, c3) = np.sin(angle), np.cos(angle)
     return np.array([[-s2, 0.0, -1.0], [-c2 * s3, c3, 0.0], [c2 * c3, s3, 0.0]])
-
-
-def cobra(t, reach=60.0):
-    """Angles and rates of (34)-(37) to the side of 5 s that t is on; fork down to 2 reach."""
-    s = t - 5.0
-    arm = (5.5 + 0.66 * abs(s)) * RPM
-    turned = (8.8 * 5.0 - 0.33 * 25.0 + 5.5 * s + 0.33 * s * abs(s)) * RPM
-    fork = -np.radians(reach) * (1.0 - np.cos(np.pi * t / 5.0))
-    fork_rate = -np.radians(reach) * np.pi / 5.0 * np.sin(np.pi * t / 5.0)
-    cab = np.radians(17.5 + 2.5 * abs(s))
-    return np.array([turned, fork, cab]), np.array([arm, fork_rate, np.sign(s) * np.radians(2.5)])
 
 
 def smooth(t):
@@ -142,7 +132,7 @@ class TestBodyRates:
         t = np.linspace(0.0, 10.0, 1001)
 
         def shallow(at):
-            return cobra(at, reach=25.0)  # 50 degrees at most: away from the singularity
+            return cobra(at, reach_deg=25.0)[:2]  # 50 degrees at most: away from the singularity
 
         start = shallow(0.0)[0]
         desired = make_desired(body_profile(t, demand(shallow, t), start))

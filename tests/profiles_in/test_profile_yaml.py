@@ -7,6 +7,7 @@ import numpy as np
 from des_cli.model.machines import DES
 from des_cli.model.profile import BodyRates, JointCommands
 from des_cli.profiles_in.load import load_profile
+from tests.support.cobra import cobra_intervals
 from tests.support.profiles import SMALL, load
 
 
@@ -15,22 +16,13 @@ def test_the_cobra_is_the_study_s_equations_34_to_37() -> None:
     command, t = profile.command, profile.t
     assert isinstance(command, JointCommands)
     assert (profile.name, profile.machine, len(t)) == ("cobra", DES, 1001)
-    early = t < 5
-    rpm, degree = 2 * np.pi / 60, np.pi / 180
-    arm = np.where(early, 8.8 - 0.66 * t, 5.5 + 0.66 * (t - 5)) * rpm
-    np.testing.assert_allclose(command.arm_rate, arm, rtol=1e-14)
-    np.testing.assert_allclose(
-        command.position[:, 0], -np.pi / 3 * (1 - np.cos(np.pi * t / 5)), atol=1e-14
-    )
-    cab = np.where(early, 30 - 2.5 * t, 5 + 2.5 * t) * degree
-    np.testing.assert_allclose(command.position[:, 1], cab, rtol=1e-14)
+    angle, start, end = cobra_intervals(t)
+    np.testing.assert_allclose(command.arm_rate[:-1], start[:, 0], rtol=1e-14)
+    np.testing.assert_allclose(command.position, angle[:, 1:], rtol=1e-14, atol=1e-14)
     # The cab's rate steps at t = 5 s; the interval on either side keeps its own.
     assert t[500] == 5.0
-    np.testing.assert_allclose(command.rate_end[:500, 1], -2.5 * degree, rtol=1e-13)
-    np.testing.assert_allclose(command.rate_start[500:, 1], 2.5 * degree, rtol=1e-13)
-    fork_rate = -np.pi / 3 * np.pi / 5 * np.sin(np.pi * t / 5)
-    np.testing.assert_allclose(command.rate_start[:, 0], fork_rate[:-1], atol=1e-14)
-    np.testing.assert_allclose(command.rate_end[:, 0], fork_rate[1:], atol=1e-14)
+    np.testing.assert_allclose(command.rate_start, start[:, 1:], rtol=1e-13, atol=1e-14)
+    np.testing.assert_allclose(command.rate_end, end[:, 1:], rtol=1e-13, atol=1e-14)
     np.testing.assert_allclose(profile.initial_angle, [0, 0, np.pi / 6], atol=1e-15)
     reduction = profile.reduction
     assert (reduction.axes, reduction.control, reduction.limits) == ("report", "scalar", "warn")

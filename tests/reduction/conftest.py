@@ -18,27 +18,22 @@ from des_cli.model.solution import Solution
 from des_cli.reduction.optimum import find_optimum
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.search import Search
+from tests.support.cobra import cobra_intervals
 
 
 def make_cobra(intervals: int = 1000, *, table3: bool = False, azimuth: float = 0.0) -> Motion:
     """The Cobra of (34)-(37), or the maneuver of Table 3: the cab's rate steps at 5 s."""
     t = np.linspace(0.0, 10.0, intervals + 1)
-    first = t <= 5.0
-    arm = np.where(first, 8.8 - 0.66 * t, 5.5 + 0.66 * (t - 5.0)) * 2.0 * np.pi / 60.0
+    angle, start, end = cobra_intervals(t)
     if table3:
-        arm = np.where(first, 2.5 - 0.24 * t, 1.3 + 0.24 * (t - 5.0))
-    turned = np.cumsum(0.5 * np.diff(t) * (arm[1:] + arm[:-1]))
-    fork = -np.pi / 3.0 * (1.0 - np.cos(np.pi * t / 5.0))
-    fork_rate = -np.pi / 3.0 * np.pi / 5.0 * np.sin(np.pi * t / 5.0)
-    slope = 0.105 if table3 else np.radians(2.5)
-    cab = np.radians(30.0) + slope * (np.abs(t - 5.0) - 5.0)
-    cab_rate = np.where(t[:-1] < 5.0 - 1e-9, -slope, slope)
-    return Motion(
-        t=t,
-        angle=np.stack([azimuth + np.concatenate([[0.0], turned]), fork, cab], axis=1),
-        rate_start=np.stack([arm[:-1], fork_rate[:-1], cab_rate], axis=1),
-        rate_end=np.stack([arm[1:], fork_rate[1:], cab_rate], axis=1),
-    )
+        fold = np.abs(t - 5.0)
+        arm, side = 1.3 + 0.24 * fold, np.where(t[:-1] < 5.0 - 1e-9, -1.0, 1.0)
+        start[:, 0], end[:, 0], start[:, 2], end[:, 2] = arm[:-1], arm[1:], *2 * [0.105 * side]
+        angle[:, 2] = np.radians(30.0) + 0.105 * (fold - 5.0)
+        turned = np.cumsum(0.5 * np.diff(t) * (arm[1:] + arm[:-1]))
+        angle[:, 0] = np.concatenate([[0.0], turned])
+    angle[:, 0] += azimuth
+    return Motion(t, angle, start, end)
 
 
 def make_wave(

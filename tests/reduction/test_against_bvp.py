@@ -15,6 +15,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
+from tests.support.cobra import cobra
+
 R1 = 2.0
 HALF = 5.0
 RPM = 2.0 * np.pi / 60.0
@@ -22,17 +24,11 @@ RPM = 2.0 * np.pi / 60.0
 
 def desired_rates(s, late):
     """phi = Theta' of (34)-(37), s seconds into the first or the second half, (3, k)."""
-    t = s + HALF if late else s
-    arm = (5.5 + 0.66 * s if late else 8.8 - 0.66 * s) * RPM
-    fork = -np.pi / 3.0 * np.pi / 5.0 * np.sin(np.pi * t / 5.0)
-    cab = np.full_like(s, np.radians(2.5) * (1.0 if late else -1.0))
-    return np.array([arm, fork, cab])
+    return cobra(s + HALF * late, late=late)[1].T
 
 
 def desired_angles(s, late):
-    t = s + HALF if late else s
-    arm = (8.8 * t - 0.33 * t**2) if not late else (35.75 + 5.5 * s + 0.33 * s**2)
-    return np.array([arm * RPM, -np.pi / 3.0 * (1.0 - np.cos(np.pi * t / 5.0))])
+    return cobra(s + HALF * late, late=late)[0][..., :2].T
 
 
 def component(theta, phi):

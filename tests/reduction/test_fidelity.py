@@ -12,7 +12,8 @@ from des_cli.model.metric import METRICS
 from des_cli.model.motion import Motion
 from des_cli.reduction.executable import integrate_rates
 from des_cli.reduction.fidelity import Deviation
-from tests.support.felt_reference import States, cobra, evaluate
+from tests.support.cobra import States, cobra
+from tests.support.felt_reference import evaluate
 
 TURNED = Seat(np.radians(87.1), np.radians(-12.0))
 ROWS = np.linspace(0.0, 10.0, 2001)

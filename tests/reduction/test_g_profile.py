@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.felt_reference import Table, by_parabolas, gauss_points
 from support.seat_forms import by_closed_forms
 
 from des_cli.errors import NotReleasedError, UsageError
@@ -20,6 +19,7 @@ from des_cli.pipeline import reduce_profile
 from des_cli.reduction.desired import find_desired
 from des_cli.reduction.g_profile import require_makeable
 from des_cli.reduction.limits import find_violations
+from tests.support.felt_reference import Table, by_parabolas, gauss_points
 
 FORWARD = Seat(yaw=np.radians(270))
 GRADUAL = ((0, 1.4), (5, 1.4), (81, 9), (91, 9), (106.2, 1.4), (111.2, 1.4))

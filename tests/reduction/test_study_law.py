@@ -8,24 +8,15 @@ from scipy.integrate import solve_ivp
 
 from des_cli.reduction.baseline import joint_deviation, weighted_energy
 from des_cli.reduction.study_law import sweep
+from tests.support.cobra import cobra
 
 RPM = 2.0 * np.pi / 60.0
 
 
 def desired(t, late):
-    """Angles and rates of (34)-(37), before or after the segments join at 5 s."""
-    s, side = t - 5.0, np.where(late, 1.0, -1.0)
-    angle = [
-        (8.8 * 5.0 - 0.33 * 25.0 + 5.5 * s + side * 0.33 * s**2) * RPM,
-        -np.pi / 3.0 * (1.0 - np.cos(np.pi * t / 5.0)),
-        np.radians(17.5 + 2.5 * side * s),
-    ]
-    rate = [
-        (5.5 + 0.66 * side * s) * RPM,
-        -np.pi / 3.0 * np.pi / 5.0 * np.sin(np.pi * t / 5.0),
-        side * np.radians(2.5) + 0.0 * t,
-    ]
-    return np.array(angle), np.array(rate)
+    """Angles and rates of (34)-(37), before or after the segments join at 5 s, (3, ...)."""
+    angle, rate, _ = cobra(t, late=late)
+    return angle.T, rate.T
 
 
 def bb3(theta, rate):

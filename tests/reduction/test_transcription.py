@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from des_cli.reduction.transcription import Transcription
+from tests.support.cobra import cobra
 
 STEP = 1e-30
 FULL = [[1.3, 0.2, -0.4], [0.2, 2.0, 0.3], [-0.4, 0.3, 0.9]]
@@ -234,13 +235,7 @@ def test_what_is_pinned(uneven, pose):
 
 def bb3_squared(t):
     """BB3^2 of the Cobra, (23) with (34)-(37) and the arm's angle in closed form."""
-    late, turn = t > 5.0, 2.0 * np.pi / 60.0
-    s = t - 5.0
-    arm = (5.5 + 0.66 * s if late else 5.5 - 0.66 * s) * turn
-    theta1 = (8.8 * 5.0 - 0.33 * 25.0 + 5.5 * s + 0.33 * s * abs(s)) * turn
-    theta2 = -np.pi / 3.0 * (1.0 - np.cos(np.pi * t / 5.0))
-    fork = -np.pi / 3.0 * np.pi / 5.0 * np.sin(np.pi * t / 5.0)
-    cab = np.radians(2.5) if late else -np.radians(2.5)
+    (theta1, theta2, _), (arm, fork, cab), _ = cobra(t)
     sloping = (
         cab * np.sin(theta1) * np.cos(theta2) * arm + cab * np.cos(theta1) * np.sin(theta2) * fork
     )

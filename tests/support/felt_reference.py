@@ -19,16 +19,11 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from tests.support.cobra import COBRA_STEP_S, RPM, States, cobra
 from tests.support.seat_forms import PITCH, YAW, Felt, Floats, by_chain, by_closed_forms
 
 JOINTS = ("arm", "fork", "cab")
 COLUMNS = ("t_s", "arm_rpm", "fork_deg", "cab_deg")
-RPM = 2 * math.pi / 60
-COBRA_S = 10.0
-COBRA_STEP_S = 5.0  # the cab's rate jumps here
-
-# (angle, rate, acceleration), each (n, 3), at instants (n,) inside an interval
-States = tuple[Floats, Floats, Floats]
 Path3 = Callable[[Floats], States]
 
 
@@ -67,26 +62,6 @@ class Evaluation:
     start_rate: Floats
     end_angle: Floats
     end_rate: Floats
-
-
-def cobra(t: Floats) -> States:
-    """Return the desired motion of (34)-(37); the arm starts at 0 rad."""
-    first = t < COBRA_STEP_S
-    late = t - COBRA_STEP_S
-    w = math.pi / 5
-    zero = np.zeros_like(t)
-    turned = 8.8 * COBRA_STEP_S - 0.33 * COBRA_STEP_S**2
-    arm = np.where(first, 8.8 * t - 0.33 * t**2, turned + 5.5 * late + 0.33 * late**2)
-    arm_rate = np.where(first, 8.8 - 0.66 * t, 5.5 + 0.66 * late)
-    fork = -60 * (1 - np.cos(w * t)), -60 * w * np.sin(w * t), -60 * w**2 * np.cos(w * t)
-    cab = np.where(first, 30 - 2.5 * t, 5 + 2.5 * t)
-    side = np.where(first, -1.0, 1.0)
-    scale = np.array([RPM, math.radians(1), math.radians(1)])
-    return (
-        np.stack([arm, fork[0], cab], axis=-1) * scale,
-        np.stack([arm_rate, fork[1], 2.5 * side], axis=-1) * scale,
-        np.stack([0.66 * side, fork[2], zero], axis=-1) * scale,
-    )
 
 
 def read_table(path: Path) -> Table:

@@ -7,14 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.support.cobra import RPM, States, cobra
 from tests.support.felt_reference import (
     COLUMNS,
-    RPM,
-    States,
     Table,
     by_parabolas,
     by_splines,
-    cobra,
     evaluate,
     gauss_points,
     read_table,

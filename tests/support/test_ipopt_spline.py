@@ -6,7 +6,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from tests.support.felt_reference import COBRA_S, cobra, evaluate
+from tests.support.cobra import COBRA_S, cobra
+from tests.support.felt_reference import evaluate
 from tests.support.ipopt_program import program_of
 from tests.support.ipopt_spline import fit_base, solve
 from tests.support.seat_forms import Floats

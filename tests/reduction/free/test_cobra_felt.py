@@ -23,7 +23,8 @@ from des_cli.model.profile import Profile, Reduction
 from des_cli.reduction.free.method import FreeResult, find_free_motion
 from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.limits import find_violations
-from tests.support.felt_reference import Evaluation, Path3, States, Table, by_parabolas, evaluate
+from tests.support.cobra import States
+from tests.support.felt_reference import Evaluation, Path3, Table, by_parabolas, evaluate
 from tests.support.free_motions import ATTITUDE, JOINTS, RATE, TURNING, G
 from tests.support.seat_forms import Floats
 
