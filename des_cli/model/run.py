@@ -99,17 +99,25 @@ class Check:
     value, tolerance : float
         The check holds where ``value <= tolerance``; a value that is not a
         number fails.
+    cure : str
+        What to do where it fails, as a part of a sentence; empty where only the tool's
+        makers can do something.
     """
 
     key: str
     name: str
     value: float
     tolerance: float
+    cure: str = ""
 
     @property
     def ok(self) -> bool:
         """Whether the measured value is a number within the tolerance."""
         return self.value <= self.tolerance
+
+    def __str__(self) -> str:
+        said = f"{self.name} is {self.value:.3g}, tolerance {self.tolerance:.3g}"
+        return f"{said}; {self.cure}" if self.cure and not self.ok else said
 
 
 @dataclass(frozen=True)
@@ -182,11 +190,7 @@ class Run:
                 [Complaint(name, f"{self.solution.status}: {self.solution.message}")]
             )
         complaints = [
-            Complaint(
-                name,
-                f"verification failed: {check.name} is {check.value:.3g}, "
-                f"tolerance {check.tolerance:.3g}",
-            )
+            Complaint(name, f"verification failed: {check}")
             for check in self.checks
             if not check.ok
         ]

@@ -130,6 +130,5 @@ def _outcome(run: Run) -> tuple[str, str]:
     """Return the status of a run, its verification included, and a sentence."""
     failed = [check for check in run.checks if not check.ok]
     if run.solution.status in SOLVED and failed:
-        words = (f"{c.name} is {c.value:.3g}, tolerance {c.tolerance:.3g}" for c in failed)
-        return "unverified", f"verification failed: {'; '.join(words)}"
+        return "unverified", f"verification failed: {'; '.join(map(str, failed))}"
     return run.solution.status, run.solution.message

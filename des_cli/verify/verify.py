@@ -28,6 +28,7 @@ from des_cli.verify.factors_optimality import check_optimality
 from des_cli.verify.leads import check_leads
 from des_cli.verify.limits import check_limits
 from des_cli.verify.occupant import check_occupant
+from des_cli.verify.stopping import check_stopping
 
 
 def verify(claim: Claim) -> tuple[Check, ...]:
@@ -54,6 +55,7 @@ def verify(claim: Claim) -> tuple[Check, ...]:
         *first,
         *check_limits(claim),
         *check_leads(claim),
+        *check_stopping(claim),
         *check_ends(claim),
         *check_hold(claim),
         *own,

@@ -59,6 +59,11 @@ def test_every_check_has_a_key_and_a_sentence_of_its_own(case):
         "finite",
         "samples.times",
         *limited,
+        *(
+            f"stopping.{joint}.{end}"
+            for joint in ("arm", "fork", "cab")
+            for end in ("start", "end")
+        ),
         "start.angle",
         "start.rate",
         "dynamics.angles",

@@ -1,0 +1,229 @@
+"""Whether a machine can reach a table's first row from rest, and come to rest after its last.
+
+A table may end with a joint inside all its limits and yet so fast, so near its end stop, that
+it must pass it. From angle x, rate v and acceleration a a joint is brought to rest by three
+phases of time: jerk J until the acceleration is -s A or less, that acceleration held, and jerk
+back to zero, with s the sign of the rate that is left when the acceleration is taken back at
+once, v + a |a| / 2 J. A joint that would pass its stop that way may brake on for longer and
+come back: with each moment of that it stops further from the one side and nearer to the other.
+
+To reach a first row from rest is the same with the time reversed: the rate changes its sign,
+the acceleration does not.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from des_cli.model.machine import JOINTS, JointLimits
+from des_cli.model.motion import Motion
+from des_cli.model.run import Check
+from des_cli.verify.claim import Claim
+
+STOPPING_TOLERANCE = 1e-6
+"""Excess over a limit, relative to it, that a stop may have: a microradian or so, a
+hundredth of what a joint's encoder tells apart."""
+
+HALVINGS = 60
+"""Of the time for which a joint brakes on: to the last bit."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A joint at an instant.
+
+    Parameters
+    ----------
+    angle, rate, acceleration : float
+        [rad], [rad/s], [rad/s^2]
+    """
+
+    angle: float
+    rate: float
+    acceleration: float
+
+    @property
+    def mirrored(self) -> State:
+        """The same to the other side."""
+        return State(-self.angle, -self.rate, -self.acceleration)
+
+    @property
+    def reversed(self) -> State:
+        """The same with time running back."""
+        return State(self.angle, -self.rate, self.acceleration)
+
+    def after(self, time: float, jerk: float) -> State:
+        """Return the state after a time [s] of constant jerk [rad/s^3]."""
+        x, v, a = self.angle, self.rate, self.acceleration
+        return State(
+            x + time * (v + time * (a / 2.0 + time * jerk / 6.0)),
+            v + time * (a + time * jerk / 2.0),
+            a + time * jerk,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """What a joint passes through on its way to rest.
+
+    Parameters
+    ----------
+    least, most : float
+        Of its angle [rad].
+    rate : float
+        Largest magnitude of its rate [rad/s].
+    """
+
+    least: float
+    most: float
+    rate: float
+
+    def joined(self, other: Reach) -> Reach:
+        """Return what is passed through on both ways."""
+        return Reach(
+            min(self.least, other.least), max(self.most, other.most), max(self.rate, other.rate)
+        )
+
+
+def check_stopping(claim: Claim) -> list[Check]:
+    """Measure by how much a joint passes a limit on its way to the table, and after it."""
+    if not claim.enforced:
+        return []
+    motion = claim.table
+    checks = []
+    for j, (joint, limit) in enumerate(zip(JOINTS, claim.profile.machine.limits, strict=True)):
+        for key, name, state, cure in (
+            ("start", "to reach the first row from rest", _first(motion, j), "begin"),
+            ("end", "to come to rest after the last row", _last(motion, j), "end"),
+        ):
+            checks.append(
+                Check(
+                    f"stopping.{joint}.{key}",
+                    f"excess of the {joint} over its limits {name}",
+                    excess(state, limit),
+                    STOPPING_TOLERANCE,
+                    f"{cure} the maneuver slower, or farther from the limit",
+                )
+            )
+    return checks
+
+
+def excess(state: State, limit: JointLimits) -> float:
+    """Return by how much a joint must pass a limit of angle or rate to come to rest, relative.
+
+    Negative where it need not.
+    """
+    reach = best_reach(state, limit)
+    return max(
+        max(reach.most, -reach.least) / limit.angle - 1.0 if math.isfinite(limit.angle) else -1.0,
+        reach.rate / limit.rate - 1.0 if math.isfinite(limit.rate) else -1.0,
+    )
+
+
+def best_reach(state: State, limit: JointLimits) -> Reach:
+    """Return what is passed through on the way to rest that leaves most room to both stops."""
+    plain = reach_of_stop(state, limit)
+    if max(plain.most, -plain.least) <= limit.angle or not math.isfinite(limit.jerk):
+        return plain
+    if plain.most < -plain.least:
+        found = best_reach(state.mirrored, limit)
+        return Reach(-found.most, -found.least, found.rate)
+    # It passes the upper stop: brake on for as long as that takes, and no longer.
+    low, high = 0.0, _time_to_turn(state, limit)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if _braked_on(state, limit, middle).most > limit.angle:
+            low = middle
+        else:
+            high = middle
+    return _braked_on(state, limit, high)
+
+
+def reach_of_stop(state: State, limit: JointLimits) -> Reach:
+    """Return what is passed through on the fastest way to rest.
+
+    Parameters
+    ----------
+    state : State
+    limit : JointLimits
+        Without a jerk limit the acceleration is free at once.
+    """
+    most, jerk = limit.acceleration, limit.jerk
+    if not math.isfinite(jerk):
+        way = 0.5 * state.rate * abs(state.rate) / most if math.isfinite(most) else 0.0
+        ends = (state.angle, state.angle + way)
+        return Reach(min(ends), max(ends), abs(state.rate))
+    left = state.rate + state.acceleration * abs(state.acceleration) / (2.0 * jerk)
+    if left < 0.0:
+        found = reach_of_stop(state.mirrored, limit)
+        return Reach(-found.most, -found.least, found.rate)
+    # Down to -peak with -jerk, hold, and up to zero with +jerk: the rate that these take off
+    # is (a^2 / 2 + peak^2) / jerk where nothing is held, less what a positive a adds first.
+    a = state.acceleration
+    peak = math.sqrt(max(jerk * state.rate + 0.5 * a * a, 0.0))
+    held = 0.0
+    if peak > most:
+        held = (state.rate + 0.5 * a * a / jerk - most * most / jerk) / most
+        peak = most
+    first = max((a + peak) / jerk, 0.0)
+    return _along(state, ((first, -jerk), (held, 0.0), (peak / jerk, jerk)))
+
+
+def _along(state: State, phases: tuple[tuple[float, float], ...]) -> Reach:
+    """Return what is passed through in phases of constant jerk."""
+    reach = Reach(state.angle, state.angle, abs(state.rate))
+    for time, jerk in phases:
+        turns = [t for t in _roots(jerk / 2.0, state.acceleration, state.rate) if 0.0 < t < time]
+        if jerk and 0.0 < (crest := -state.acceleration / jerk) < time:
+            turns.append(crest)
+        for t in (*turns, time):
+            at = state.after(t, jerk)
+            reach = reach.joined(Reach(at.angle, at.angle, abs(at.rate)))
+        state = state.after(time, jerk)
+    return reach
+
+
+def _braked_on(state: State, limit: JointLimits, time: float) -> Reach:
+    """Return what is passed through where a joint first brakes as hard as it can for a time."""
+    ramp = min(time, (limit.acceleration + state.acceleration) / limit.jerk)
+    phases = ((ramp, -limit.jerk), (time - ramp, 0.0))
+    there = state.after(ramp, -limit.jerk).after(time - ramp, 0.0)
+    return _along(state, phases).joined(reach_of_stop(there, limit))
+
+
+def _time_to_turn(state: State, limit: JointLimits) -> float:
+    """Return the time in which a joint that brakes as hard as it can comes to a standstill."""
+    ramp = (limit.acceleration + state.acceleration) / limit.jerk
+    # The rate is a parabola that opens down: it falls through zero at its last root.
+    turn = max(_roots(-limit.jerk / 2.0, state.acceleration, state.rate), default=math.inf)
+    if turn <= ramp:
+        return max(turn, 0.0)
+    return ramp + max(state.after(ramp, -limit.jerk).rate, 0.0) / limit.acceleration
+
+
+def _roots(a: float, b: float, c: float) -> tuple[float, ...]:
+    """Return the real roots of ``a t^2 + b t + c``, without cancellation."""
+    if a == 0.0:
+        return (-c / b,) if b else ()
+    inside = b * b - 4.0 * a * c
+    if inside < 0.0:
+        return ()
+    q = -0.5 * (b + math.copysign(math.sqrt(inside), b))
+    return (q / a, c / q) if q else (0.0,)
+
+
+def _first(motion: Motion, joint: int) -> State:
+    return State(
+        float(motion.angle[0, joint]),
+        float(motion.rate_start[0, joint]),
+        float(motion.acceleration[0, joint]),
+    ).reversed
+
+
+def _last(motion: Motion, joint: int) -> State:
+    return State(
+        float(motion.angle[-1, joint]),
+        float(motion.rate_end[-1, joint]),
+        float(motion.acceleration[-1, joint]),
+    )
