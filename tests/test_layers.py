@@ -18,6 +18,7 @@ LAYERS = (
     ("verify", "results"),
     ("pipeline",),
     ("profiles_in", "runs_out", "show"),
+    ("release",),
     ("batch", "tradeoff"),
     ("cli", "__main__"),
 )

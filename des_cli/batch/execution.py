@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -113,19 +114,26 @@ def _reduce_and_write(
 
 
 def _write(output: Output, run: Run, target: Path) -> bytes | None:
-    """Write a run folder or a table; return the table that belongs on stdout."""
+    """Write a run folder or a table; return the table that belongs on stdout.
+
+    No table gets its name, or goes to stdout, whose bytes are not what the run is to be.
+    """
+    from des_cli.release.gate import require_table
+
+    accept = partial(require_table, run)
     if output.table_format is None:
         from des_cli.runs_out.run_folder import write_run
 
-        write_run(run, target, plots=output.plots, overwrite=output.overwrite)
+        write_run(run, target, plots=output.plots, overwrite=output.overwrite, accept=accept)
         return None
     from des_cli.runs_out.atomic import write_file
     from des_cli.runs_out.tables import command_columns, encode_table
 
     table = encode_table(command_columns(run), output.table_format)
     if output.out == STANDARD_STREAM:
+        accept(table)
         return table
-    write_file(target, table, overwrite=output.overwrite)
+    write_file(target, table, overwrite=output.overwrite, accept=accept)
     return None
 
 

@@ -13,7 +13,7 @@ import re
 import secrets
 import shutil
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -40,7 +40,13 @@ _PLAIN_WORDS = {
 }
 
 
-def write_file(path: str | os.PathLike[str], data: bytes, *, overwrite: bool = False) -> Path:
+def write_file(
+    path: str | os.PathLike[str],
+    data: bytes,
+    *,
+    overwrite: bool = False,
+    accept: Callable[[bytes], None] = lambda _: None,
+) -> Path:
     """Write a whole file, or leave everything as it was.
 
     The bytes go to a temporary beside the target, reach the disk, and then
@@ -54,6 +60,9 @@ def write_file(path: str | os.PathLike[str], data: bytes, *, overwrite: bool = F
     data : bytes
     overwrite : bool
         Whether an existing file may be replaced; it keeps its permissions.
+    accept : callable
+        Given what was written, as it is read back; what it raises leaves everything as it
+        was. A device or a pipe cannot be read back: there it is given what will be written.
 
     Returns
     -------
@@ -69,6 +78,7 @@ def write_file(path: str | os.PathLike[str], data: bytes, *, overwrite: bool = F
     with plain_words(shown, "cannot be written", missing="its folder does not exist"):
         existing = _mode(shown)
         if existing is not None and not stat.S_ISREG(existing):
+            accept(data)
             # Opening a folder fails by itself.
             with open(shown, "wb") as special:
                 special.write(data)
@@ -79,6 +89,7 @@ def write_file(path: str | os.PathLike[str], data: bytes, *, overwrite: bool = F
         temporary = beside(target)
         try:
             _write_through(temporary, data, None if existing is None else stat.S_IMODE(existing))
+            accept(temporary.read_bytes())
             if overwrite:
                 os.replace(temporary, target)
             else:

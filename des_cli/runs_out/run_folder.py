@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -69,7 +69,12 @@ class StoredRun:
 
 
 def write_run(
-    run: Run, folder: str | os.PathLike[str], *, plots: bool = True, overwrite: bool = False
+    run: Run,
+    folder: str | os.PathLike[str],
+    *,
+    plots: bool = True,
+    overwrite: bool = False,
+    accept: Callable[[bytes], None] = lambda _: None,
 ) -> tuple[Path, ...]:
     """Write the outputs of a run into its folder.
 
@@ -87,6 +92,9 @@ def write_run(
     overwrite : bool
         Whether a run that is already there may be replaced. Needed for every
         folder that is not empty.
+    accept : callable
+        Given the command table, as it is read back from where it was built; what it raises
+        leaves the folder as it was.
 
     Returns
     -------
@@ -106,9 +114,9 @@ def write_run(
     outputs = _outputs(run, plots)
     outputs[MANIFEST] = encode_manifest(run.profile, outputs)
     if target.is_dir():
-        _fill(target, outputs)
+        _fill(target, outputs, accept)
     else:
-        _appear(target, outputs)
+        _appear(target, outputs, accept)
     return tuple(target / name for name in outputs)
 
 
@@ -211,7 +219,7 @@ def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
     return outputs
 
 
-def _write_all(folder: Path, outputs: Mapping[str, bytes]) -> None:
+def _write_all(folder: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> None:
     for name, data in outputs.items():
         path = folder / name
         with atomic.plain_words(path, "cannot be written"):
@@ -219,19 +227,20 @@ def _write_all(folder: Path, outputs: Mapping[str, bytes]) -> None:
         atomic.write_through(path, data)
     for inner in {(folder / name).parent for name in outputs}:
         atomic.sync_folder(inner)
+    accept(read_bytes(folder / COMMANDS))
 
 
-def _appear(target: Path, outputs: Mapping[str, bytes]) -> None:
+def _appear(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> None:
     """Build a folder beside its name, and give it the name when it is whole."""
     with atomic.plain_words(target, "cannot be written"):
         target.parent.mkdir(parents=True, exist_ok=True)
         with atomic.new_folder(target.parent, target.name) as building:
-            _write_all(building, outputs)
+            _write_all(building, outputs, accept)
             os.rename(building, target)
         atomic.sync_folder(target.parent)
 
 
-def _fill(target: Path, outputs: Mapping[str, bytes]) -> None:
+def _fill(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> None:
     """Build inside an existing folder, then move every file to its place, the manifest last.
 
     The run that was there loses its manifest before its first file is
@@ -241,7 +250,7 @@ def _fill(target: Path, outputs: Mapping[str, bytes]) -> None:
         atomic.plain_words(target, "cannot be written"),
         atomic.new_folder(target, MANIFEST) as building,
     ):
-        _write_all(building, outputs)
+        _write_all(building, outputs, accept)
         discard_run(target)
         # A manifest that is none of ours, or that is broken, also goes first.
         (target / MANIFEST).unlink(missing_ok=True)
