@@ -15,8 +15,9 @@ the regularisation beside a budget costs less than that."""
 def doubts(points: Sequence[TradePoint]) -> list[str]:
     """Name the points that cannot be the best there is.
 
-    A larger budget allows all that a smaller one does, and three equal factors are
-    a scalar: a point with less reduction than one that it contains is a local minimum.
+    A larger budget on a metric allows all that a smaller one does. Three equal factors are
+    a scalar, and joints that move freely may move as any factor has them move. So a point
+    with less reduction than one that it contains is a local minimum.
     """
     usable = [p for p in points if p.solved and p.objective_reduction is not None]
     return [*_less_for_more(usable), *_worse_than_scalar(usable)]
@@ -24,9 +25,10 @@ def doubts(points: Sequence[TradePoint]) -> list[str]:
 
 def _less_for_more(usable: Sequence[TradePoint]) -> list[str]:
     """Name budgets that buy less than a smaller one."""
-    budgets = sorted((p for p in usable if p.swept != "r2"), key=lambda p: (p.control, p.value))
+    budgets = [p for p in usable if p.swept != "r2"]
+    budgets.sort(key=lambda p: (p.control, p.swept, p.value))
     found = []
-    for _, curve in groupby(budgets, key=lambda p: p.control):
+    for _, curve in groupby(budgets, key=lambda p: (p.control, p.swept)):
         for tight, loose in pairwise(curve):
             if _reduction(loose) < _reduction(tight) - SLACK:
                 found.append(

@@ -170,10 +170,18 @@ def size(claim: Claim, metric: str) -> float:
 
 
 def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
-    """Return the values that a metric is the largest of, (m,)."""
+    """Return the values that a peak metric is the largest of, (m,).
+
+    Raises
+    ------
+    ValueError
+        If the metric is none.
+    """
     if metric == ATTITUDE_ERROR:
         chord = np.sqrt(np.sum((felt.rotation - claim.before.rotation) ** 2, axis=(0, 1)) / 8.0)
         return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(chord, 1.0))))
+    if metric != ANGULAR_ACCELERATION_PEAK_RATIO:
+        raise ValueError(f"{metric} is no largest value over time")
     before, after = (np.sqrt(np.sum(each.turning**2, axis=0)) for each in (claim.before, felt))
     return np.asarray(after / max(float(np.max(before)), UNFELT_ANGULAR_ACCELERATION))
 

@@ -108,7 +108,11 @@ class Claim:
 
     @cached_property
     def weight(self) -> Floats:
-        """Weights of the trapezoidal rule on the states of a motion, (2 (n - 1),) [s]."""
+        """Weights of the trapezoidal rule on the states of a motion, (2 (n - 1),) [s].
+
+        States are in the order of `SeatChain.along`: the starts of all intervals, then
+        the ends of all.
+        """
         return np.tile(0.5 * self.requested.step, 2)
 
     @cached_property

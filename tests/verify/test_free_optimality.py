@@ -71,7 +71,7 @@ def test_every_check_has_a_key_and_a_sentence_of_its_own(case):
         f"budget.{RATE}",
         "cost",
         "cost.unreduced",
-        "cost.rise",
+        "objective.rise",
         "optimality",
     ]
 
@@ -125,10 +125,10 @@ def test_a_weight_in_the_studys_axes_is_on_these(case):
 
 def test_a_motion_that_is_worse_than_the_desired_one(case):
     away = between(case.solution.modified, case.desired, 1.3)
-    assert "cost.rise" in case.failed(case.played(away))
+    assert "objective.rise" in case.failed(case.played(away))
     # what is allowed to be rougher may be worse than a desired motion that is not allowed
     tight = (Budget(G, 1e-6), Budget(RATE, 1e-6))
-    assert "cost.rise" not in {c.key for c in case.checks(case.played(away), budget=tight)}
+    assert "objective.rise" not in {c.key for c in case.checks(case.played(away), budget=tight)}
 
 
 def test_the_desired_motion_is_no_optimum(case):

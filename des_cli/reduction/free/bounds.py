@@ -1,4 +1,8 @@
-"""The bounds of a free motion at the points of its grid: budgets on peaks, and the occupant's."""
+"""The bounds of a free motion at the points of its grid: budgets on peaks, and the occupant's.
+
+The points are the two Gauss points of every interval. G onset is bounded from one to the other:
+across a knot the motion is as smooth as within, and the verification measures the table's.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,7 @@ from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import OccupantBounds
 from des_cli.model.metric import (
+    ANGULAR_ACCELERATION_PEAK_RATIO,
     ATTITUDE_ERROR,
     UNFELT_ANGULAR_ACCELERATION,
     Budget,
@@ -28,9 +33,17 @@ from des_cli.units import STANDARD_GRAVITY_M_S2
 
 
 def point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) -> LocalBound:
-    """Return a budget that bounds every point."""
+    """Return a budget on a peak metric, as a bound at every point.
+
+    Raises
+    ------
+    ValueError
+        If it is on a metric that is none, or one that has no bound yet.
+    """
     if budget.metric == ATTITUDE_ERROR:
         return _attitude_bound(task, times, angle, budget.most)
+    if budget.metric != ANGULAR_ACCELERATION_PEAK_RATIO:
+        raise ValueError(f"{budget.metric} is no bound at a point")
     peak = np.max(np.linalg.norm(task.requested().seat_angular_acceleration, axis=-1))
     return NormBound("acceleration", budget.most * max(float(peak), UNFELT_ANGULAR_ACCELERATION))
 
