@@ -19,6 +19,7 @@ from des_cli.reduction.problem import Problem
 from des_cli.verify.budgets import measure
 from des_cli.verify.claim import Claim
 from des_cli.verify.verify import verify
+from tests.reduction.conftest import study_cost, study_motion
 
 
 def profile_of(motion: Motion, reduction: Reduction, machine: Machine = DES) -> Profile:
@@ -68,6 +69,30 @@ def claim_of(
     return Claim(
         profile, requested, desired or requested, profile.seat, solution, **(further or {})
     )
+
+
+def remade(problem: Problem, solution: Solution, control: Floats) -> Solution:
+    """A solution of other factors, with its motion and cost by the study's closed forms."""
+    x = study_motion(problem, control)
+    factor = np.broadcast_to(control, (len(control), 3))
+    motion = Motion(
+        problem.desired.t,
+        x[:, :3],
+        factor[:-1] * problem.desired.rate_start,
+        factor[1:] * problem.desired.rate_end,
+    )
+    cost = float(study_cost(problem, x))
+    return replace(solution, control=control, modified=motion, cost=cost)
+
+
+def claim_of_factors(problem: Problem, control: Floats, **options: Any) -> Claim:
+    """The claim that factors solve a problem, with motion and costs by the closed forms."""
+    desired = problem.desired
+    ones = study_motion(problem, np.ones_like(control))
+    solution = remade(problem, solution_of(desired), control)
+    solution = replace(solution, cost_unreduced=float(study_cost(problem, ones)))
+    claim = claim_of(desired, machine=problem.machine or DES, **{"limits": "warn", **options})
+    return replace(claim, solution=solution, posed=problem)
 
 
 def values_of(checks: Iterable[Check]) -> dict[str, float]:

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-
-import numpy as np
 import pytest
 
-from des_cli.model.arrays import Floats
 from des_cli.model.machines import DES
 from des_cli.model.solution import Solution
 from des_cli.reduction.executable import nearest_executable
@@ -17,8 +12,6 @@ from tests.reduction.conftest import (  # noqa: F401
     cobra,
     pose,
     solve_problem,
-    study_cost,
-    study_motion,
 )
 from tests.support.free_case import Case
 
@@ -44,22 +37,3 @@ def inside(cobra, pose, solve_problem) -> tuple[Problem, Solution]:  # noqa: F81
         motion, 0.03, control="per-joint", axes="seat", r1=(2, 2, 2), tracking=0.3, machine=DES
     )
     return problem, solve_problem(problem)
-
-
-@pytest.fixture(scope="session")
-def remade() -> Callable[[Problem, Solution, Floats], Solution]:
-    """A solution of other factors, with its motion and cost made to fit."""
-
-    def remake(problem: Problem, solution: Solution, control: Floats) -> Solution:
-        x = study_motion(problem, control)
-        factor = np.broadcast_to(control, (len(control), 3))
-        motion = replace(
-            solution.modified,
-            angle=x[:, :3],
-            rate_start=factor[:-1] * problem.desired.rate_start,
-            rate_end=factor[1:] * problem.desired.rate_end,
-        )
-        cost = float(study_cost(problem, x))
-        return replace(solution, control=control, modified=motion, cost=cost)
-
-    return remake

@@ -11,8 +11,11 @@ import pytest
 from des_cli.model.machine import JOINTS, JointLimits, Machine
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
+from des_cli.model.profile import Reduction
+from des_cli.model.solution import Solution
+from des_cli.reduction.problem import Problem
 from des_cli.verify.limits import check_limits, magnitudes
-from tests.support.claims import claim_of, failing, values_of
+from tests.support.claims import claim_of, failed_of_factors, failing, values_of
 from tests.support.free_case import SPENT, Case, with_rates
 
 NONE = JointLimits(math.inf, math.inf, math.inf, math.inf)
@@ -197,3 +200,17 @@ def test_a_step_of_a_rate_in_an_optimum(case: Case) -> None:
     stepped = case.played(Motion(motion.t, angle, start, end))
     assert case.failed(stepped) - SPENT == {"limits.cab.rate_step"}
     assert case.failed(stepped, limits="check") <= SPENT
+
+
+def test_a_limit_that_factors_break_by_little(
+    inside: tuple[Problem, Solution],
+) -> None:
+    problem, solution = inside
+    # The solver keeps a millionth clear of the limits itself.
+    gentler = DES.limits[0].acceleration * (1.0 - 1e-5)
+    limits = (replace(DES.limits[0], acceleration=gentler), *DES.limits[1:])
+    keys = failed_of_factors(
+        replace(problem, machine=replace(DES, limits=limits)), solution, Reduction(budget=())
+    )
+    assert "limits.arm.acceleration" in keys
+    assert set(keys) <= {"limits.arm.acceleration", "optimality"}
