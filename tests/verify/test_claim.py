@@ -105,7 +105,7 @@ def test_weights_integrate_what_is_linear_between_samples() -> None:
     assert claim.weight @ states == pytest.approx(square)
 
 
-@pytest.mark.parametrize(("samples", "rough"), [(20, True), (30, False)])
+@pytest.mark.parametrize(("samples", "rough"), [(24, True), (26, False)])
 def test_waves_of_few_samples_are_rough(samples: int, rough: bool) -> None:
     # the boundary is at a wave of 2 pi / sqrt(2 sqrt(1e-3)), or 25 samples
     t = 0.01 * np.arange(8 * samples + 1)
