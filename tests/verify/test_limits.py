@@ -120,12 +120,13 @@ def test_both_sides_of_a_step_are_rates() -> None:
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_an_angle_counts_between_samples_where_the_rate_turns_and_only_there(sign: float) -> None:
-    # from 0 with the rate 1 to -1 in 2 s: back at 0, the top of the parabola is at 1 s
-    motion = with_rates(np.array([0.0, 2.0]), np.zeros(3), sign * np.array([[1.0] * 3, [-1.0] * 3]))
-    np.testing.assert_allclose(magnitudes(motion)["angle"], [[0.5] * 3, [0.0] * 3], atol=1e-15)
-    # slowing without turning its vertex is beyond the interval: the end is the largest
-    slowing = replace(motion, rate_end=sign * np.full((1, 3), 0.5))
-    slowing = replace(slowing, angle=np.array([[0.0] * 3, [sign * 1.5] * 3]))
+    # from 1 with the rate 2 to -2 in 1 s: back at 1, the top of the parabola is at half a second
+    turning = with_rates(
+        np.array([0.0, 1.0]), np.full(3, sign), sign * np.array([[2.0] * 3, [-2.0] * 3])
+    )
+    np.testing.assert_allclose(magnitudes(turning)["angle"], [[1.5] * 3, [1.0] * 3], atol=1e-15)
+    # slowing without turning, its vertex is beyond the interval: the end is the largest
+    slowing = with_rates(np.array([0.0, 1.0]), np.zeros(3), sign * np.array([[2.0] * 3, [1.0] * 3]))
     np.testing.assert_allclose(magnitudes(slowing)["angle"], [[0.0] * 3, [1.5] * 3])
 
 
@@ -162,6 +163,24 @@ def test_a_jerk_that_rounding_makes_is_none(at: int, units: int, broken: bool) -
         allowed, made = 16.0 * np.finfo(float).eps / 1e-6, 24.0 * np.finfo(float).eps / 1e-6
         left = (values_of(checks)["limits.fork.jerk"] + 1.0) * 1e-9
         assert left == pytest.approx(made - allowed, rel=1e-2)
+
+
+@pytest.mark.parametrize(("first", "second"), [(2.0, 1.0), (1.0, 2.0)])
+@pytest.mark.parametrize(("units", "broken"), [(24, False), (40, True)])
+def test_what_rounding_makes_is_by_the_faster_side_and_the_shorter_step(
+    first: float, second: float, units: int, broken: bool
+) -> None:
+    # 16 last places of the faster rate, 2 rad/s, over the square of the shorter step, 1 ms
+    t = np.array([0.0, 1e-3, 3e-3]) if first == 2.0 else np.array([0.0, 2e-3, 3e-3])
+    rate = np.zeros((2, 3))
+    rate[:, 2] = first, second
+    end = rate.copy()
+    made = units * np.finfo(float).eps * 1.5e-3 * np.diff(t)[1] / 1e-6
+    end[1, 2] += made
+    motion = Motion(t, np.zeros((3, 3)), rate, end)
+    checks = check_limits(claim_of(motion, machine=limited(2, jerk=1e-15)))
+    key = "limits.cab.jerk"
+    assert (key in failing(checks)) is broken
 
 
 @pytest.mark.parametrize("joint", [0, 1, 2])
