@@ -83,6 +83,14 @@ def test_both_bounds_of_a_component_hold_together() -> None:
         assert values_of(checks) == {"occupant.gz": pytest.approx(excess)}
 
 
+def test_a_least_value_above_zero_is_a_bound_too() -> None:
+    for value, excess in ((3.0, -0.5), (1.0, 0.5)):
+        g = np.full((3, STATES), value)
+        for bounds in (OccupantBounds(gx=(2.0, np.inf)), OccupantBounds(gx=(2.0, 9.0))):
+            (check,) = check_occupant(bounds, table(), felt_of(g=g))
+            assert check.value == pytest.approx(excess)
+
+
 def test_a_bound_is_on_its_own_component() -> None:
     g = np.outer([1.0, 2.0, 3.0], np.ones(STATES))
     bounds = OccupantBounds(gx=(-9.0, 1.5), gy=(-9.0, 1.5), gz=(-9.0, 1.5))
