@@ -83,6 +83,14 @@ def test_both_bounds_of_a_component_hold_together() -> None:
         assert values_of(checks) == {"occupant.gz": pytest.approx(excess)}
 
 
+def test_excesses_are_those_of_each_state() -> None:
+    g = np.zeros((3, STATES))
+    g[2] = np.linspace(-1.0, 1.25, STATES)
+    ((key, name, excess),) = excesses(OccupantBounds(gz=(-0.5, 0.5)), table(), felt_of(g=g))
+    assert (key, name) == ("gz", "Gz")
+    np.testing.assert_allclose(excess, np.abs(g[2]) - 0.5, atol=1e-15)
+
+
 def test_a_least_value_above_zero_is_a_bound_too() -> None:
     for value, excess in ((3.0, -0.5), (1.0, 0.5)):
         g = np.full((3, STATES), value)
