@@ -83,18 +83,20 @@ def _onset(motion: Motion, felt: Felt) -> Floats:
     """Return the change of G over ``WINDOW`` that begins or ends at each state, (3, m) [g/s].
 
     Between the states G is a broken line that may jump at the samples; its change over a
-    fixed time is largest where the time begins or ends at a corner.
+    fixed time is largest where the time begins or ends at a corner. A motion that is not
+    longer than ``WINDOW`` is one window.
     """
     t, count = motion.t, len(motion.step)
     window = min(WINDOW, float(t[-1] - t[0]))
     times = np.concatenate([t[:-1], t[1:]])
     order = np.stack([np.arange(count), np.arange(count) + count], axis=1).ravel()
-    corner = times[order] + np.tile([1.0, -1.0], count) * BESIDE * np.repeat(motion.step, 2)
+    beside = BESIDE * np.repeat(motion.step, 2)
+    corner = times[order] + np.tile([1.0, -1.0], count) * beside
     onset = np.zeros_like(felt.g)
     for component, line in zip(onset, felt.g[:, order], strict=True):
         for shift in (window, -window):
             other = corner + shift
-            inside = (other >= t[0]) & (other <= t[-1])
+            inside = (other >= t[0] - 2.0 * beside) & (other <= t[-1] + 2.0 * beside)
             change = np.abs(np.interp(other, corner, line) - line) / window
             component[order] = np.maximum(component[order], np.where(inside, change, 0.0))
     return onset

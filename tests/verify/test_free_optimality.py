@@ -11,7 +11,7 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond_on
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
-from des_cli.model.motion import Motion, integrate_sides
+from des_cli.model.motion import integrate_sides
 from tests.reduction.conftest import make_cobra
 from tests.support.free_case import RATE, Case, G, between, with_rates
 
@@ -43,64 +43,6 @@ def test_optima_pass(options):
     assert [check for check in checks if not check.ok] == []
     assert case.value("optimality") < 0.01
     assert case.value("optimality", case.played(case.desired), seat=case.profile.seat) > 0.9
-
-
-def test_every_check_has_a_key_and_a_sentence_of_its_own(case):
-    checks = case.checks()
-    for names in ([c.key for c in checks], [c.name for c in checks]):
-        assert len(set(names)) == len(names)
-    limited = [
-        f"limits.{joint}.{quantity}"
-        for joint in ("arm", "fork", "cab")
-        for quantity in ("angle", "rate", "acceleration", "jerk", "rate_step")
-    ]
-    limited.remove("limits.arm.angle")  # it turns endlessly
-    assert [check.key for check in checks] == [
-        "finite",
-        "samples.times",
-        *limited,
-        *(
-            f"stopping.{joint}.{end}"
-            for joint in ("arm", "fork", "cab")
-            for end in ("start", "end")
-        ),
-        "start.angle",
-        "start.rate",
-        "dynamics.angles",
-        f"budget.{G}",
-        f"budget.{RATE}",
-        "cost",
-        "cost.unreduced",
-        "objective.rise",
-        "optimality",
-    ]
-
-
-@pytest.mark.parametrize("value", [np.nan, np.inf])
-@pytest.mark.parametrize("name", ["angle", "rate_start", "control", "adjoint", "cost"])
-def test_numbers_that_are_none(case, name, value):
-    solution, n = case.solution, len(case.requested.t)
-    if name == "cost":
-        broken = replace(solution, cost=value)
-    elif name in ("control", "adjoint"):
-        broken = replace(solution, **{name: np.where(np.arange(n) == 7, value, 1.0)[:, None]})
-    else:
-        values = getattr(solution.modified, name).copy()
-        values[7, 1] = value
-        broken = replace(solution, modified=replace(solution.modified, **{name: values}))
-    assert case.failed(broken) == {"finite"}
-
-
-def test_times_that_are_others(case):
-    motion = case.solution.modified
-    slower = Motion(2.0 * motion.t, motion.angle, motion.rate_start, motion.rate_end)
-    assert case.failed(replace(case.solution, modified=slower)) == {"samples.times"}
-    fewer = Motion(motion.t[:-1], motion.angle[:-1], motion.rate_start[:-1], motion.rate_end[:-1])
-    n = len(fewer.t)
-    short = replace(
-        case.solution, modified=fewer, control=np.zeros((n, 0)), adjoint=np.zeros((n, 0))
-    )
-    assert case.failed(short) == {"samples.times"}
 
 
 def test_costs_that_are_off(case):
