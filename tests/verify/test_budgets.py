@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.machines import DES
-from des_cli.model.metric import METRICS, Budget
+from des_cli.model.metric import METRICS, PEAK_METRICS, Budget
 from des_cli.model.motion import Record
 from des_cli.model.profile import Reduction
 from des_cli.model.solution import Solution
@@ -18,7 +18,6 @@ from des_cli.reduction.baseline import joint_deviation
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.problem import Problem
 from des_cli.verify.budgets import (
-    AT_SAMPLES,
     INTEGRALS,
     check_budgets,
     keeps_budgets,
@@ -92,8 +91,8 @@ def test_a_metric_of_a_change_that_is_known(metric: str, felt: Felt, value: floa
 
 
 def test_every_metric_is_known_to_the_verification() -> None:
-    assert set(INTEGRALS) | AT_SAMPLES | {"mean_square_one_minus_p"} == set(METRICS)
-    assert not set(INTEGRALS) & AT_SAMPLES
+    assert set(INTEGRALS) | PEAK_METRICS | {"mean_square_one_minus_p"} == set(METRICS)
+    assert not set(INTEGRALS) & PEAK_METRICS
 
 
 def test_a_change_counts_by_the_time_that_it_lasts() -> None:
@@ -203,7 +202,7 @@ def test_budgets_that_are_spent_may_hold_the_motion() -> None:
         value = spent(metric)
         for share, found in ((0.94, False), (0.96, True), (1.0, True)):
             names = [each.metric for each in spent_budgets(budgeted(metric, value / share))]
-            assert names == ([metric] if found and metric not in AT_SAMPLES else [])
+            assert names == ([metric] if found and metric not in PEAK_METRICS else [])
 
 
 @pytest.mark.parametrize(("jump", "torn"), [(0.9, False), (-0.9, False), (1.1, True), (-1.1, True)])

@@ -29,6 +29,9 @@ LIMITS = [
     for quantity in ("angle", "rate", "acceleration", "jerk", "rate_step")
     if (joint, quantity) != ("arm", "angle")  # it turns endlessly
 ]
+STOPPING = [
+    f"stopping.{joint}.{end}" for joint in ("arm", "fork", "cab") for end in ("start", "end")
+]
 BEFORE = ["finite", "samples.times"]
 BUDGETS = (Budget(G, 0.2), Budget(RATE, 0.3))
 BOUNDED = replace(
@@ -52,6 +55,7 @@ def test_a_free_motion_goes_through_its_checks_in_order() -> None:
     assert keys_of(free()) == [
         *BEFORE,
         *LIMITS,
+        *STOPPING,
         "start.angle",
         "start.rate",
         "dynamics.angles",
@@ -59,7 +63,7 @@ def test_a_free_motion_goes_through_its_checks_in_order() -> None:
         f"budget.{RATE}",
         "cost",
         "cost.unreduced",
-        "cost.rise",
+        "objective.rise",
         "optimality",
     ]
 
@@ -89,7 +93,7 @@ def test_what_more_is_claimed_is_checked_too(options: dict[str, Any], further: l
 
 def test_without_limits_neither_joints_nor_occupant_are_bounded() -> None:
     found = keys_of(free(machine=BOUNDED, limits="warn"))
-    assert found == [key for key in keys_of(free()) if key not in LIMITS]
+    assert found == [key for key in keys_of(free()) if key not in LIMITS + STOPPING]
 
 
 DYNAMICS = ["start.angle", "start.rate", "dynamics.angles", "dynamics.rates"]
