@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import math
 import os
 import subprocess
 import sys
@@ -17,19 +16,18 @@ import pyarrow.parquet as pq
 import pytest
 
 from des_cli.cli import kinematics as module
-from des_cli.cli.kinematics import kinematics
-from des_cli.cli.state_options import QUANTITIES
 from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.machine import JOINTS
 from des_cli.profiles_in.load import load_profile
 from des_cli.runs_out.state_tables import state_columns
 from des_cli.study.state import report_motion
-from des_cli.units import FOOT_M, UNITS, suffixes
+from des_cli.units import FOOT_M
+from tests.support.state_commands import SPIN, of
 
 REFERENCE = json.loads(
     (Path(__file__).parents[1] / "data" / "kinematics_reference.json").read_text()
 )["states"]
-SPIN = ["--arm-rad-s", "2", "--fork-deg", "40", "--fork-rad-s", "-0.5", "--cab-rad-s", "1"]
+
 
 # The reference's name of a quantity, ours, and how many feet ours is a metre of.
 SAME = (
@@ -63,12 +61,6 @@ def options_of(state: dict[str, Any]) -> list[str]:
     return [word for option, value in numbers for word in (option, repr(value))]
 
 
-def of(invoke: Any, *args: str) -> dict[str, Any]:
-    result = invoke("kinematics", *args, "--format", "json")
-    assert (result.exit_code, result.stderr) == (0, "")
-    return json.loads(result.stdout)
-
-
 @pytest.mark.parametrize("state", REFERENCE, ids=lambda state: state["name"])
 def test_reference_states_come_out(invoke, state: dict[str, Any]) -> None:
     found = of(invoke, *options_of(state))
@@ -92,36 +84,6 @@ def test_reference_states_come_out(invoke, state: dict[str, Any]) -> None:
     )
     x, y, z = state["specific_force_body_g_with_gravity"]
     np.testing.assert_allclose(found["seat_g"], [x, y, -z], **close)
-
-
-def test_there_is_an_option_for_each_unit_of_each_quantity() -> None:
-    names = {option for parameter in kinematics.params for option in parameter.opts}
-    wanted = {
-        f"--{stem}-{suffix}".replace("_", "-")
-        for stem, kind in QUANTITIES
-        for suffix in suffixes(kind)
-    }
-    assert wanted <= names
-    assert {"--arm-rpm", "--cab-deg-s2", "--seat-yaw-deg"} <= wanted
-    assert {kind for _, kind in QUANTITIES} <= {unit.quantity for unit in UNITS}
-
-
-def test_units_mean_the_same(invoke) -> None:
-    one = of(invoke, "--arm-rpm", "30", "--fork-deg", "-60", "--cab-deg-s2", "90")
-    other = of(
-        invoke,
-        *("--arm-rad-s", repr(math.pi), "--fork-rad", repr(-math.pi / 3)),
-        *("--cab-rad-s2", repr(math.pi / 2)),
-    )
-    for name in ("w_seat_rad_s", "seat_g", "seat_position_m"):
-        np.testing.assert_allclose(one[name], other[name], rtol=0, atol=1e-13)
-
-
-def test_what_is_not_given_is_rest(invoke) -> None:
-    found = of(invoke)
-    assert (found["machine"], found["angle_rad"], found["rate_rad_s"]) == ("des", [0] * 3, [0] * 3)
-    assert found["seat_yaw_rad"] == math.pi / 2
-    np.testing.assert_allclose(found["seat_g"], [0, 0, 1], rtol=0, atol=1e-15)
 
 
 def test_machine_by_name_and_from_a_file(invoke, tmp_path: Path) -> None:
@@ -215,35 +177,6 @@ def test_a_terminal_gets_text(python_environment: dict[str, str], tmp_path: Path
     os.close(ours)
     assert done.returncode == 0
     assert shown.startswith("Machine des, seat yaw 90 deg, pitch 0 deg")
-
-
-def test_text_is_aligned_and_has_units(invoke) -> None:
-    text = invoke("kinematics", *SPIN, "--format", "text").stdout
-    lines = text.splitlines()
-    start = lines.index("Seat acceleration, seat axes, gravity left out [g]")
-    table = lines[start + 1 : start + 6]
-    assert [line.split()[0] for line in table] == [
-        "x",
-        "tangential",
-        "centripetal",
-        "coriolis",
-        "total",
-    ]
-    assert len({len(line) for line in table}) == 1
-    found = of(invoke, *SPIN)["seat_acceleration_g"]
-    for line in table[1:]:
-        name, *numbers = line.split()
-        np.testing.assert_allclose([float(x) for x in numbers], found[name], rtol=0, atol=5.1e-7)
-    assert "-0.000000" not in text
-
-
-def test_text_of_a_profile_has_a_line_a_sample(invoke, small: str) -> None:
-    lines = invoke("kinematics", small, "--format", "text").stdout.splitlines()
-    numbers = [line.split() for line in lines[-21:]]
-    row = json.loads(invoke("kinematics", small).stdout)[-1]
-    expected = [row["t_s"], *np.degrees(row["angle_rad"]), *row["coriolis_rad_s2"]]
-    expected += [*row["coriolis_seat_rad_s2"], *row["seat_g"], row["singular_value"][2]]
-    np.testing.assert_allclose([float(x) for x in numbers[-1]], expected, rtol=0, atol=5.1e-5)
 
 
 @pytest.mark.parametrize(

@@ -153,21 +153,6 @@ def test_the_plot_is_written_beside_the_points(invoke, small: str, tmp_path) -> 
     assert (tmp_path / "points.csv").is_file()
 
 
-@pytest.mark.parametrize("taken", ["points.csv", "curve.png"])
-def test_what_exists_is_refused_before_anything_is_computed(
-    invoke, small: str, tmp_path, monkeypatch: pytest.MonkeyPatch, taken: str
-) -> None:
-    (tmp_path / taken).write_bytes(b"mine")
-    args = ("sweep", small, "--r2s", "1", "--plot", "curve.png", "-o", "points.csv")
-    with monkeypatch.context() as patch:
-        patch.setattr(module, "_plan", lambda *_: pytest.fail("went on"))
-        result = invoke(*args)
-    assert (result.exit_code, (tmp_path / taken).read_bytes()) == (1, b"mine")
-    assert result.stderr == f"{taken}: exists; --overwrite replaces it\n"
-    assert invoke(*args, "--overwrite").exit_code == 0
-    assert (tmp_path / taken).read_bytes() != b"mine"
-
-
 def test_a_point_that_does_not_converge_keeps_its_row(invoke, small: str) -> None:
     result = invoke("sweep", small, "--r2s", "1", "--set", "reduction.max_iterations=1")
     assert result.exit_code == 4
@@ -191,34 +176,6 @@ def test_a_maneuver_that_cannot_be_flown_is_infeasible_with_a_reason(
         [point] = curve(rows_of(result.stdout), "optimum", control)
         assert point["status"] == "infeasible"  # 400 degrees; the limit is a full turn
         assert "the fork is 6.981 rad at the start, outside its limit" in point["message"]
-
-
-@pytest.mark.parametrize(
-    ("args", "words"),
-    [
-        (["--budgets", "0.1", "--r2s", "1"], "exclude each other"),
-        (["--r2", "1", "--r2s", "1"], "exclude each other"),
-        (["--tracking", "1"], "--tracking needs --r2s"),
-        (["--budgets", "0.1,x"], "not a list of numbers"),
-        (["--budgets", "0.1,-1"], "above 0"),
-        (["--r2s", "inf"], "above 0"),
-        (["--budgets", "seat_rate=0.1"], "is not a metric"),
-        (["--controls", "both"], "is not free, scalar or per-joint"),
-        (["--plot", "curve.pdf"], "FILE.png"),
-        (["-o", "x.csv", "-f", "json"], "contradicts"),
-        (["--budget", "0.1"], "joint_deviation_relative, which is swept"),
-        (["--budget", "0.1", "--r2s", "1"], "--budget and --r2s exclude"),
-        (["--budgets", "seat_g_rms_error_g=5%"], "is no share: give it in g"),
-        (["--r2s", "1", "--controls", "free"], "r2 and tracking weigh factors"),
-        (["--ends", "match-rates"], "match-rates needs control: free"),
-        (["--set", "reduction.hold=[arm]"], "hold needs control: per-joint"),
-    ],
-    ids=lambda value: value if isinstance(value, str) else " ".join(value),
-)
-def test_wrong_use(invoke, small: str, args: list[str], words: str) -> None:
-    result = invoke("sweep", small, *args)
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert words in result.stderr
 
 
 def test_a_faulty_profile_is_told_once(invoke, small: str) -> None:

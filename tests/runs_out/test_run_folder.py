@@ -13,31 +13,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from des_cli import __version__
 from des_cli.errors import FileAccessError, NotReleasedError
 from des_cli.model.run import Run
-from des_cli.runs_out.manifest import encode_json, is_run, read_manifest
+from des_cli.runs_out.manifest import is_run
 from des_cli.runs_out.run_folder import discard_run, read_run, write_run
 from des_cli.runs_out.tables import trajectory_columns
+from tests.support.run_files import entry, rewrite, tree
 
 MakeRun = Callable[..., Run]
 
+
 FILES = ["commands.csv", "manifest.json", "metrics.json", "trajectory.parquet"]
-
-
-def tree(folder: Path) -> dict[str, bytes]:
-    return {
-        str(path.relative_to(folder)): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    }
-
-
-@pytest.fixture
-def stored(tmp_path: Path, synthetic_run: MakeRun) -> Path:
-    folder = tmp_path / "runs" / "cobra"
-    write_run(synthetic_run(), folder, plots=False)
-    return folder
 
 
 @pytest.mark.slow
@@ -63,19 +49,6 @@ def test_everything_reads_back(
     assert list(found.trajectory) == list(expected)
     for name, values in expected.items():
         np.testing.assert_array_equal(found.trajectory[name], values)
-
-
-def test_the_manifest_lists_every_file_with_size_and_digest(stored: Path) -> None:
-    manifest = json.loads((stored / "manifest.json").read_bytes())
-    assert manifest["format"] == "des-coriolis/run/1"
-    assert manifest["tool"] == {"name": "des-coriolis", "version": __version__}
-    assert manifest["profile"] == {"name": "cobra", "sha256": "5c" * 32}
-    listed = {entry["name"]: entry for entry in manifest["files"]}
-    files = tree(stored)
-    assert set(listed) == set(files) - {"manifest.json"}
-    for name, entry in listed.items():
-        assert entry["size"] == len(files[name])
-        assert entry["sha256"] == hashlib.sha256(files[name]).hexdigest()
 
 
 @pytest.mark.slow
@@ -230,57 +203,11 @@ def test_all_problems_are_told_at_once(stored: Path) -> None:
     assert all(str(stored) in str(problem) for problem in caught.value.complaints)
 
 
-def rewrite(folder: Path, **changes: Any) -> None:
-    manifest = json.loads((folder / "manifest.json").read_bytes()) | changes
-    (folder / "manifest.json").write_bytes(json.dumps(manifest).encode())
-
-
-def entry(name: object = "metrics.json", size: object = 0, sha256: object = "0" * 64) -> object:
-    return {"name": name, "size": size, "sha256": sha256}
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"format": "des-coriolis/run/2"},
-        {"format": ["des-coriolis/run/1"]},
-        {"profile": {}},
-        {"profile": {"name": 7}},
-        {"files": None},
-        {"files": ["metrics.json"]},
-        {"files": [entry(name="../secret")]},
-        {"files": [entry(name="/etc/passwd")]},
-        {"files": [entry(name="manifest.json")]},
-        {"files": [entry(name="")]},
-        {"files": [entry(name="a\0b")]},
-        {"files": [entry(size=True)]},
-        {"files": [entry(size="12")]},
-        {"files": [entry(sha256="0" * 63)]},
-        {"files": [entry(sha256=None)]},
-    ],
-)
-def test_a_manifest_of_another_form_is_no_run(stored: Path, changes: dict[str, Any]) -> None:
-    rewrite(stored, **changes)
-    assert not is_run(stored)
-    with pytest.raises(FileAccessError, match=r"manifest\.json"):
-        read_run(stored)
-
-
 def test_a_manifest_that_lists_too_little_is_refused(stored: Path) -> None:
     rewrite(stored, files=[])
     with pytest.raises(FileAccessError) as caught:
         read_run(stored)
     assert len(caught.value.complaints) == 3
-
-
-@pytest.mark.parametrize(
-    "data", [b"", b"[]", b"null", b"\xff\xfe", b"{", b'{"a":1}x', b"[" * 100_000]
-)
-def test_a_manifest_that_is_no_json_object_is_one_line(stored: Path, data: bytes) -> None:
-    (stored / "manifest.json").write_bytes(data)
-    with pytest.raises(FileAccessError, match="JSON") as caught:
-        read_manifest(stored)
-    assert "\n" not in str(caught.value)
 
 
 def replace_file(folder: Path, name: str, data: bytes) -> None:
@@ -301,19 +228,6 @@ def test_a_trajectory_that_is_no_parquet_is_one_line(stored: Path, data: bytes) 
     assert "\n" not in str(caught.value)
 
 
-def test_a_folder_without_a_manifest_is_no_run(tmp_path: Path, stored: Path) -> None:
-    assert is_run(stored)
-    (stored / "manifest.json").unlink()
-    assert not is_run(stored)
-    assert not is_run(tmp_path / "absent")
-    with pytest.raises(FileAccessError, match=r"is not a run: it has no manifest\.json"):
-        read_run(stored)
-
-
-def test_a_folder_that_was_still_being_built_is_no_run(stored: Path) -> None:
-    assert not is_run(stored.rename(stored.parent / ".cobra.partial-0123abcd"))
-
-
 def test_discarding_follows_no_link_out_of_the_folder(tmp_path: Path, stored: Path) -> None:
     outside = tmp_path / "outside"
     outside.mkdir()
@@ -323,14 +237,3 @@ def test_discarding_follows_no_link_out_of_the_folder(tmp_path: Path, stored: Pa
     discard_run(stored)
     assert (outside / "x.png").read_bytes() == b"mine"
     assert not is_run(stored)
-
-
-def test_json_is_exact_ordered_and_knows_no_infinity() -> None:
-    content = {"b": np.float64(0.1), "a": {"x": math.inf, "n": np.int64(3), "ok": np.True_}}
-    content["c"] = [np.nan, np.array([1e-300, 2.5])]
-    data = encode_json(content)
-    assert data.endswith(b"}\n")
-    found = json.loads(data)
-    assert list(found) == ["b", "a", "c"]
-    assert found == {"b": 0.1, "a": {"x": None, "n": 3, "ok": True}, "c": [None, [1e-300, 2.5]]}
-    assert b"true" in data

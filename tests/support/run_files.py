@@ -3,6 +3,7 @@
 import io
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,3 +21,20 @@ def csv_rows(text: str) -> np.ndarray:
 def metrics_of(folder: Path) -> dict:
     """The metrics of a run folder."""
     return json.loads((folder / "metrics.json").read_text())
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+def rewrite(folder: Path, **changes: Any) -> None:
+    manifest = json.loads((folder / "manifest.json").read_bytes()) | changes
+    (folder / "manifest.json").write_bytes(json.dumps(manifest).encode())
+
+
+def entry(name: object = "metrics.json", size: object = 0, sha256: object = "0" * 64) -> object:
+    return {"name": name, "size": size, "sha256": sha256}

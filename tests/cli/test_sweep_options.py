@@ -1,0 +1,48 @@
+"""What a sweep varies and where it writes: what is refused before anything is computed."""
+
+import pytest
+
+from des_cli.cli import sweep as module
+
+
+@pytest.mark.parametrize("taken", ["points.csv", "curve.png"])
+def test_what_exists_is_refused_before_anything_is_computed(
+    invoke, small: str, tmp_path, monkeypatch: pytest.MonkeyPatch, taken: str
+) -> None:
+    (tmp_path / taken).write_bytes(b"mine")
+    args = ("sweep", small, "--r2s", "1", "--plot", "curve.png", "-o", "points.csv")
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "_plan", lambda *_: pytest.fail("went on"))
+        result = invoke(*args)
+    assert (result.exit_code, (tmp_path / taken).read_bytes()) == (1, b"mine")
+    assert result.stderr == f"{taken}: exists; --overwrite replaces it\n"
+    assert invoke(*args, "--overwrite").exit_code == 0
+    assert (tmp_path / taken).read_bytes() != b"mine"
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (["--budgets", "0.1", "--r2s", "1"], "exclude each other"),
+        (["--r2", "1", "--r2s", "1"], "exclude each other"),
+        (["--tracking", "1"], "--tracking needs --r2s"),
+        (["--budgets", "0.1,x"], "not a list of numbers"),
+        (["--budgets", "0.1,-1"], "above 0"),
+        (["--r2s", "inf"], "above 0"),
+        (["--budgets", "seat_rate=0.1"], "is not a metric"),
+        (["--controls", "both"], "is not free, scalar or per-joint"),
+        (["--plot", "curve.pdf"], "FILE.png"),
+        (["-o", "x.csv", "-f", "json"], "contradicts"),
+        (["--budget", "0.1"], "joint_deviation_relative, which is swept"),
+        (["--budget", "0.1", "--r2s", "1"], "--budget and --r2s exclude"),
+        (["--budgets", "seat_g_rms_error_g=5%"], "is no share: give it in g"),
+        (["--r2s", "1", "--controls", "free"], "r2 and tracking weigh factors"),
+        (["--ends", "match-rates"], "match-rates needs control: free"),
+        (["--set", "reduction.hold=[arm]"], "hold needs control: per-joint"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else " ".join(value),
+)
+def test_wrong_use(invoke, small: str, args: list[str], words: str) -> None:
+    result = invoke("sweep", small, *args)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert words in result.stderr
