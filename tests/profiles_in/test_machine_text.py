@@ -35,7 +35,7 @@ def gimballed(draw: st.DrawFn) -> Machine:
     axis: ForkAxis = draw(st.sampled_from(FORK_AXES))
     limits = [JointLimits(draw(ENDLESS), draw(SIZE), draw(SIZE), draw(ENDLESS)) for _ in range(3)]
     return Machine(
-        name=draw(st.text("ab9 -\"'#:{é😀\n\t", min_size=1, max_size=9)),
+        name=draw(st.text("ab9\x7f\x85 -\"'#:{é😀\n\t", min_size=1, max_size=9)),
         rows=gimballed_centrifuge_rows(lengths, fork_axis=axis),
         limits=(limits[0], limits[1], limits[2]),
         gravity=draw(st.floats(0.1, 30.0)),
@@ -75,6 +75,12 @@ def test_rows_are_written_where_no_lengths_make_the_chain() -> None:
         text = machine_text(machine)
         assert "rows:" in text
         assert parse_machine(text, "m.yaml") == machine
+
+
+@pytest.mark.parametrize("length", ["Lx", "a, b", "R: 1", "#R", " R", "{R", "é", "R\x7f"])
+def test_the_name_of_a_length_reads_back_whatever_it_is(length: str) -> None:
+    machine = replace(OWN, lengths={length: 7.3})
+    assert parse_machine(machine_text(machine), "m.yaml") == machine
 
 
 def test_without_rows_another_length_makes_another_machine() -> None:
