@@ -9,7 +9,6 @@ from des_cli.batch.source import Source
 from des_cli.cli.tradeoff_text import point_line, points_text
 from des_cli.errors import ExitCode, Failure
 from des_cli.model.tradeoff import TradePoint
-from des_cli.tradeoff.curve import doubts
 from des_cli.tradeoff.jobs import (
     PointPlan,
     PointResult,
@@ -82,20 +81,6 @@ def test_text_is_aligned_and_says_why_there_is_nothing() -> None:
     )
     assert lines[-1].endswith("1  iteration-limit: too few steps")
     assert point_line(GONE) == "scalar, r2 1: iteration-limit: too few steps"
-
-
-def test_a_local_minimum_is_named() -> None:
-    looser = replace(POINT, value=0.1, objective_reduction=0.45)
-    joint = replace(POINT, control="per-joint", objective_reduction=0.4)
-    assert doubts([POINT, replace(looser, objective_reduction=0.6)]) == []
-    [budget] = doubts([looser, POINT])
-    assert "scalar at joint_deviation_relative = 0.1 takes off less than" in budget
-    [factors] = doubts([POINT, joint])
-    assert factors.startswith("per-joint at joint_deviation_relative = 0.05 is worse than scalar")
-    weighed = [replace(point, swept="r2", value=1.0) for point in (POINT, joint)]
-    assert doubts(weighed) == []  # by the cost, which is equal
-    assert len(doubts([weighed[0], replace(weighed[1], cost=0.11)])) == 1
-    assert doubts([replace(POINT, status="unverified"), joint]) == []
 
 
 def test_how_a_sweep_ends() -> None:
