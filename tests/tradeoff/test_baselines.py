@@ -92,9 +92,11 @@ def test_controls_and_budgets_of_the_profile_change_nothing() -> None:
     assert baseline_points(replace(profile, reduction=other)) == baseline_points(profile)
 
 
-def test_a_prepared_motion_gives_the_same_points() -> None:
-    profile = cobra()
-    assert baseline_points(profile, (), prepare_profile(profile)) == baseline_points(profile)
+def test_a_motion_that_is_made_already_is_the_one_that_is_slowed() -> None:
+    profile, other = cobra(), cobra("joints.arm_rpm=5")
+    prepared = prepare_profile(other)
+    assert baseline_points(profile, (), prepared) == baseline_points(other)
+    assert baseline_points(profile) != baseline_points(other)
 
 
 def test_the_sweep_that_runs_away_has_a_status_and_no_numbers() -> None:
