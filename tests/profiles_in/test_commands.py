@@ -101,6 +101,8 @@ def test_an_arm_s_angle_gives_its_start_and_at_a_kink_the_mean_of_both_rates() -
     _, command = made("joints: {arm_deg: '30 + 60*max(t - 1, 0)', fork_deg: 0, cab_deg: 0}")
     assert command.arm_start == pytest.approx(np.pi / 6)
     np.testing.assert_allclose(command.arm_rate, np.pi / 3 * np.array([0, 0, 0.5, 1, 1]))
+    t, command = made("joints: {arm_rad: t**2, fork_deg: 0, cab_deg: 0}")
+    np.testing.assert_allclose(command.arm_rate, 2 * t)
 
 
 def test_a_velocity_may_step_where_a_position_may_not() -> None:
@@ -156,7 +158,8 @@ def test_segments_must_reach_the_end() -> None:
         "joints: {arm_rpm: 1, fork_deg: [{from_s: 0, to_s: 1.9, value: 1}], cab_deg: 1}"
     )
     assert "joints.fork_deg[0]: ends at 1.9 s and leaves the time to 2 s uncovered" in line
-    made("joints: {arm_rpm: 1, fork_deg: [{from_s: 1e-10, to_s: 2, value: 1}], cab_deg: 1}")
+    nearly = "[{from_s: 1e-10, to_s: 1.9999999999, value: 1}]"
+    made(f"joints: {{arm_rpm: 1, fork_deg: {nearly}, cab_deg: 1}}")
 
 
 def test_what_the_schema_refused_hides_no_other_command() -> None:
