@@ -171,9 +171,23 @@ def test_what_the_schema_refused_hides_no_other_command() -> None:
     assert "no finite value at t = 1 s" in complaint.what
 
 
-def test_too_much_arithmetic_is_refused_before_it_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
-    text = "joints: {arm_rpm: t + t + t + t + t, fork_deg: 0, cab_deg: 0}"
+LONG = "t + t + t + t + t"
+
+
+@pytest.mark.parametrize(
+    "arm",
+    [
+        LONG,
+        f"[{{from_s: 0, to_s: 1, value: {LONG}}}, {{from_s: 1, to_s: 2, value: 1}}]",
+        f"[{{from_s: 0, to_s: 1, value: 1}}, {{from_s: 1, to_s: 2, value: {LONG}}}]",
+    ],
+)
+def test_too_much_arithmetic_is_refused_wherever_it_stands(
+    arm: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = f"joints: {{arm_rpm: {arm}, fork_deg: 0, cab_deg: 0}}"
     made(text)
-    monkeypatch.setattr(commands, "MAX_WORK", 20)
+    monkeypatch.setattr(commands, "MAX_WORK", 35)
+    made("joints: {arm_rpm: t, fork_deg: 0, cab_deg: 0}")
     (line,) = refused(text)
     assert "joints: takes too much arithmetic; give a longer step" in line
