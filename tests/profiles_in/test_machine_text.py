@@ -86,7 +86,7 @@ def test_the_name_of_a_length_reads_back_whatever_it_is(length: str) -> None:
 def test_without_rows_another_length_makes_another_machine() -> None:
     machine = replace(JOHNSVILLE, name="mine")
     text = machine_text(machine).replace("L2: 50", "L2: 25")
-    lengths = machine.lengths | {"L2": 25 * 0.3048}
+    lengths = {**machine.lengths, "L2": 25 * 0.3048}
     rows = gimballed_centrifuge_rows(lengths, fork_axis="tangential")
     assert parse_machine(text, "m.yaml") == replace(machine, lengths=lengths, rows=rows)
 

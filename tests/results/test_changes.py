@@ -88,7 +88,6 @@ def test_smoothing_is_measured_from_the_record_to_its_target() -> None:
     )
     energies = [integral(RECORD, coriolis_parts(each)["vector"] ** 2) for each in (RECORD, target)]
     assert found.coriolis_reduction == pytest.approx(1.0 - energies[1] / energies[0], rel=1e-9)
-    assert found.coriolis_reduction > 0.0
 
 
 def test_a_replaced_motion_is_told_with_its_cost() -> None:
