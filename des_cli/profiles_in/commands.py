@@ -158,13 +158,17 @@ def _read(
     t = grid_with_joints(
         regular_grid(*time), (piece.start for parts in pieces.values() for piece in parts)
     )
-    work = len(t) * sum(piece.expression.size for parts in pieces.values() for piece in parts[:1])
-    if work > MAX_WORK:
+    if len(t) * sum(map(largest_size, pieces.values())) > MAX_WORK:
         findings.add([name], "takes too much arithmetic; give a longer step or simpler expressions")
         return None
     sample = _sample_joints if name == "joints" else sample_body_rates
     commands = sample(pieces, units, paths, t, findings)
     return None if commands is None else (t, commands)
+
+
+def largest_size(pieces: tuple[Piece, ...]) -> int:
+    """Return the operations of a command at a sample at the most: one piece covers it."""
+    return max(piece.expression.size for piece in pieces)
 
 
 def covers(

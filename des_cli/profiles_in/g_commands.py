@@ -9,7 +9,7 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import WASHOUT, BodyRates, GCommand
-from des_cli.profiles_in.commands import covers, read_time, sample_body_rates
+from des_cli.profiles_in.commands import covers, largest_size, read_time, sample_body_rates
 from des_cli.profiles_in.expression import constant_expression, parse_expression
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.g_schema import G_STEMS, MOST_G, RATE_STEMS, Onset
@@ -72,7 +72,7 @@ def read_g(section: Section, time: Any, findings: Findings) -> tuple[Floats, GCo
     t = grid_with_joints(
         regular_grid(*grid), (piece.start for parts in pieces.values() for piece in parts)
     )
-    if len(t) * sum(parts[0].expression.size for parts in pieces.values()) > MAX_WORK:
+    if len(t) * sum(map(largest_size, pieces.values())) > MAX_WORK:
         findings.add(["g"], "takes too much arithmetic; give a longer step or simpler expressions")
         return None
     asked = {stem: _sampled(pieces[stem], t, paths[stem], findings) for stem in given}

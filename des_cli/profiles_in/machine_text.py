@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -13,6 +12,7 @@ from des_cli.profiles_in.machine_file import machine_summary
 from des_cli.profiles_in.machine_rows import UNCHAINED
 from des_cli.profiles_in.machine_yaml import machine_mapping, occupant_mapping
 from des_cli.profiles_in.short_numbers import shortest_unit
+from des_cli.profiles_in.yaml_text import yaml_key, yaml_text
 
 _LENGTHS: dict[ForkAxis, str] = {
     "radial": """\
@@ -79,7 +79,7 @@ def _short(machine: Machine, axis: ForkAxis) -> Iterator[str]:
             yield f"source: {_flow(machine.source)}"
         names = list(machine.lengths)
     unit, texts = shortest_unit(("m", "ft"), [machine.lengths[name] for name in names])
-    each = ", ".join(f"{name}: {text}" for name, text in zip(names, texts, strict=True))
+    each = ", ".join(f"{yaml_key(name)}: {text}" for name, text in zip(names, texts, strict=True))
     yield from (_LENGTHS[axis], f"lengths_{unit.suffix}: {{{each}}}")
     yield from (_FORK_AXIS, f"fork_axis: {axis}")
     yield from (_LIMITS, "limits:")
@@ -124,10 +124,10 @@ def _full(machine: Machine) -> Iterator[str]:
 
 
 def _flow(value: Any) -> str:
-    """Write a value on one line; a text in the quotes of JSON, which are YAML's too."""
+    """Write a value on one line; keys without quotes where they need none."""
     if isinstance(value, Mapping):
-        return _braced(*(f"{key}: {_flow(each)}" for key, each in value.items()))
-    return json.dumps(value, ensure_ascii=False)
+        return _braced(*(f"{yaml_key(key)}: {_flow(each)}" for key, each in value.items()))
+    return yaml_text(value)
 
 
 def _braced(*members: str) -> str:

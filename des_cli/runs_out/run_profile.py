@@ -6,13 +6,12 @@ does not tell what the pilot feels: the seat is part of it.
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 
 from des_cli.model.machines import MACHINES
 from des_cli.model.run import Run
 from des_cli.profiles_in.machine_yaml import machine_mapping
+from des_cli.profiles_in.yaml_text import yaml_text
 
 
 def encode_run_profile(run: Run, table: str) -> bytes:
@@ -39,8 +38,8 @@ def encode_run_profile(run: Run, table: str) -> bytes:
     lines = [
         f"# {run.profile.name}, as it was reduced: the commands and the seat belong together.",
         *(_found(run)),
-        # JSON is YAML, and every double reads back exactly
-        *(f"{key}: {json.dumps(value, ensure_ascii=False)}" for key, value in document.items()),
+        # every double reads back exactly
+        *(f"{key}: {yaml_text(value)}" for key, value in document.items()),
     ]
     return ("\n".join(lines) + "\n").encode()
 

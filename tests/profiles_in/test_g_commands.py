@@ -89,22 +89,10 @@ def test_rates_beside_the_g() -> None:
 @pytest.mark.parametrize(
     ("lines", "place", "words"),
     [
-        ("gz_g: [{to_g: 2, onset_g_s: 1}]", "g.gz_g[0]", "starts from nowhere"),
-        ("gz_g: [{hold_g: 2, hold_s: 1, to_g: 3}]", "g.gz_g[0]", "a hold and a ramp in one"),
-        ("gz_g: [{hold_g: 2}]", "g.gz_g[0]", "does not say how long"),
-        ("gz_g: [{hold_g: 2, hold_s: 0}]", "g.gz_g[0].hold_s", "lasts no time"),
-        ("gz_g: [{hold_g: 2, hold_s: 1}, {hold_g: 3, hold_s: 1}]", "gz_g[1].hold_g", "first alone"),
-        ("gz_g: [{hold_g: 2, hold_s: 1}, {to_g: 3}]", "gz_g[1]", "give to_g and onset_g_s"),
-        ("gz_g: [{hold_g: 2, hold_s: 1}, {to_g: 2, onset_g_s: 1}]", "gz_g[1].to_g", "before (2 g)"),
-        ("gz_g: [{hold_g: 2, hold_s: 1}, {to_g: 3, onset_g_s: 0}]", "onset_g_s", "greater than 0"),
-        ("gz_g: [{hold_g: 200, hold_s: 1}]", "hold_g", "at most 100"),
-        ("gz_g: [{hold_g: 2, hold_s: 1, onset: 1}]", "onset", "did you mean onset_g_s"),
-        ("gz_g: true", "g.gz_g", "must be a number, an expression in t"),
         ("gz: 3", "g.gz", "did you mean"),
         ("gz_g: 3", "", "time is missing"),
         ("washout_s: 3", "g.washout_s", "washes out nothing"),
         ("washout_s: 3", "g", "asks for no G"),
-        ("{gz_g: 2, r_deg_s: 3}", "g.r_deg_s", "is not a key here"),
     ],
 )
 def test_what_is_wrong_is_said_with_its_place(lines: str, place: str, words: str) -> None:

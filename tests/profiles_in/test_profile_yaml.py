@@ -45,25 +45,6 @@ joints: {arm_deg_s: 57.29577951308232, fork_rad: "pi/18*t", cab_rad: "pi/36"}
     np.testing.assert_allclose(a.command.position, b.command.position, rtol=1e-14)
 
 
-def test_a_joint_of_segments_between_samples_becomes_a_sample() -> None:
-    segments = """
-    - {from_s: 0, to_ms: 700, value: "t"}
-    - {from_s: 0.7, to_s: 2, value: "0.7 - (t - 0.7)"}
-"""
-    profile = load(SMALL.replace('"10*t"', segments))
-    assert profile.t.tolist() == [0, 0.5, 0.7, 1, 1.5, 2]
-    assert isinstance(profile.command, JointCommands)
-    rates = np.degrees(profile.command.rate_start[:, 0])
-    np.testing.assert_allclose(rates, [1, 1, -1, -1, -1], rtol=1e-12)
-
-
-def test_segments_may_reach_beyond_the_time_that_is_flown() -> None:
-    short = load_profile("cobra", settings=["time.stop_s=4", "time.start_s=1"])
-    assert (short.t[0], short.t[-1]) == (1.0, 4.0)
-    assert isinstance(short.command, JointCommands)
-    np.testing.assert_allclose(np.degrees(short.command.position[-1, 1]), 20.0)
-
-
 def test_body_rates_have_exact_middles() -> None:
     text = """\
 format: des-coriolis/1

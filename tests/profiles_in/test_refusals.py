@@ -113,12 +113,6 @@ def test_segments_must_join(second: str, place: str, words: str) -> None:
     assert any(f": joints.fork_deg{place}: " in line and words in line for line in lines), lines
 
 
-def test_segments_must_start_with_the_profile() -> None:
-    late = "[{from_s: 0.5, to_s: 2, value: 3}]"
-    (line,) = problems_of(SMALL.replace('"10*t"', late))
-    assert "starts at 0.5 s and leaves the time from 0 s uncovered" in line
-
-
 def test_all_mistakes_come_at_once_in_the_order_of_the_file() -> None:
     text = """\
 format: des-coriolis/1

@@ -5,12 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-import pytest
-from pydantic import ValidationError
-
-from des_cli.profiles_in.command_schema import Segment
 from des_cli.profiles_in.machine_schema import JointLimits
-from des_cli.profiles_in.schema import Joints, Seat, profile_json_schema
+from des_cli.profiles_in.schema import Joints, profile_json_schema
 from des_cli.units import suffixes
 
 
@@ -54,22 +50,3 @@ def test_the_schema_is_json_without_nulls_as_defaults() -> None:
     schema = profile_json_schema()
     assert json.loads(json.dumps(schema)) == schema
     walk(schema)
-
-
-def test_a_quantity_given_twice_is_named_with_what_is_wrong_in_each() -> None:
-    with pytest.raises(ValidationError) as caught:
-        Seat.model_validate({"yaw_deg": "north", "yaw_rad": "south", "pitch_deg": 1})
-    found = [(error["loc"], error["type"]) for error in caught.value.errors()]
-    assert found == [
-        ((), "profile"),
-        (("yaw_rad",), "float_type"),
-        (("yaw_deg",), "float_type"),
-    ]
-
-
-def test_a_field_is_no_key_and_a_value_stays_in_the_unit_of_its_key() -> None:
-    segment = Segment.model_validate({"from_ms": 500, "to_s": 2, "value": "t"})
-    assert (segment.given_key("from"), segment.from_, segment.si("from")) == ("from_ms", 500.0, 0.5)
-    assert segment.written("from") == "from_ms (500)"
-    with pytest.raises(ValidationError, match="the start of a segment needs its unit in the key"):
-        Segment.model_validate({"from": 0, "to_s": 2, "value": 1})

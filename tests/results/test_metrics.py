@@ -104,19 +104,6 @@ def test_profile_and_solver(run):
     assert solver["iterations"] == solution.iterations
 
 
-@pytest.mark.parametrize("part", PARTS)
-def test_coriolis(run, part):
-    wanted, made = run.desired, run.solution.modified
-    before, after = coriolis_parts(wanted)[part], coriolis_parts(made)[part]
-    found = run.metrics["coriolis"][part]
-    energies = [integral(wanted, side**2) for side in (before, after)]
-    assert found["reduction"] == pytest.approx(1.0 - energies[1] / energies[0], rel=1e-9)
-    assert found["rms_before_rad_s2"] == pytest.approx(math.sqrt(energies[0] / 6.0), rel=1e-9)
-    assert found["rms_after_rad_s2"] == pytest.approx(math.sqrt(energies[1] / 6.0), rel=1e-9)
-    assert found["peak_before_rad_s2"] == pytest.approx(np.abs(before).max(), rel=1e-9)
-    assert found["peak_after_rad_s2"] == pytest.approx(np.abs(after).max(), rel=1e-9)
-
-
 def test_joint_fidelity(run):
     wanted, made = run.desired, run.solution.modified
     off = on_sides(made)[0] - on_sides(wanted)[0]
@@ -141,21 +128,6 @@ def test_joint_fidelity(run):
         gap = made.rate_start[0, j] - wanted.rate_start[0, j]
         assert (abs(gap) > 1e-4) == (joint != "fork")  # which starts from rest
         assert fidelity["start_error"][f"{joint}_rad_s"] == pytest.approx(gap)
-
-
-def test_a_motion_that_is_not_replaced_costs_nothing(run):
-    assert run.metrics["executable"] == {
-        "replaced": False,
-        "breaks_limits": True,  # its cab's rate steps, and limits are only warned of
-        "joint_change_relative": 0.0,
-        "joint_change_max_rad": dict.fromkeys(JOINTS, 0.0),
-        "seat_rate_deviation_relative": 0.0,
-        "seat_g_rms_error_g": 0.0,
-        "seat_angular_acceleration_rms_error_rad_s2": 0.0,
-        "attitude_error_max_deg": 0.0,
-        "coriolis_reduction": 0.0,
-    }
-    assert run.metrics["changes"] == {"damping": None, "machine": None, "smoothing": None}
 
 
 def test_the_constant_factor_has_the_solutions_reduction(run):

@@ -7,12 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.profile import JointCommands
 from des_cli.model.run import Run
 from des_cli.profiles_in.load import load_profile
+from des_cli.profiles_in.yaml_nodes import parse_yaml
 from des_cli.runs_out.run_profile import encode_run_profile
 from des_cli.runs_out.tables import command_columns, encode_table
 
@@ -50,3 +52,15 @@ def test_a_machine_of_its_own_is_written_out(
     (tmp_path / "p.yaml").write_bytes(encode_run_profile(run, "t.csv"))
     found = load_profile(tmp_path / "p.yaml").machine
     assert (found.limits, found.rows) == (machine.limits, machine.rows)
+
+
+@pytest.mark.parametrize("name", ["own", "a: b", "é😀", "a\x85b", "a\x7fb"])
+def test_the_name_of_the_machine_reads_back_whatever_it_holds(
+    name: str, synthetic_run: Callable[..., Run]
+) -> None:
+    run = synthetic_run(11)
+    machine = replace(run.profile.machine, name=name)
+    made = encode_run_profile(replace(run, profile=replace(run.profile, machine=machine)), "c.csv")
+    found = parse_yaml(made.decode(), "profile.yaml").plain()
+    assert found["machine"]["name"] == name
+    assert found["samples"] == {"file": "c.csv"}

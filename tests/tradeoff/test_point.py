@@ -1,10 +1,23 @@
-"""The optima of a curve, against numbers found elsewhere."""
+"""Points of a sweep against numbers found elsewhere, and what a point says of its run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from des_cli.model.machine import JOINTS
+from des_cli.model.metric import Budget
+from des_cli.model.run import Check
+from des_cli.model.tradeoff import TradePoint
+from des_cli.results.reading import read_metrics
 from des_cli.tradeoff.baselines import CONSTANT_FACTORS
-from tests.support.points import Rows, column, curve, rows_of
+from des_cli.tradeoff.point import COSTS, PARTS, mean_weight, trade_point
+from tests.support.points import Rows, column, curve
+from tests.support.runs import make_run
 
 
 def test_weights_give_the_known_optima(by_weight: Rows) -> None:
@@ -40,18 +53,6 @@ def test_every_point_has_the_felt_price(by_weight: Rows) -> None:
     assert errors == sorted(errors)
 
 
-@pytest.fixture(scope="module")
-def by_budget() -> Rows:
-    from click.testing import CliRunner
-
-    from des_cli.cli.main import program
-
-    args = ["sweep", "cobra", "--axes", "seat", "--r1", "2,2,2", "--set", "time.step_s=0.1"]
-    result = CliRunner().invoke(program, [*args, "--budgets", "0.02,0.05"])
-    assert result.exit_code == 0, result.stderr
-    return rows_of(result.stdout)
-
-
 def test_budgets_are_kept_and_spent_inside_the_limits(by_budget: Rows) -> None:
     for control in ("scalar", "per-joint"):
         points = curve(by_budget, "optimum", control)
@@ -73,9 +74,84 @@ def test_more_deviation_and_more_factors_buy_more(by_budget: Rows) -> None:
     assert all(more > less for more, less in zip(joint, scalar, strict=True))
 
 
-def test_the_optimum_beats_a_constant_factor_of_the_same_deviation(by_budget: Rows) -> None:
-    constant = curve(by_budget, "constant-p")
-    slow = np.interp(
-        0.05, column(constant, "joint_deviation_relative"), column(constant, "objective_reduction")
+@pytest.fixture
+def told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> Callable[..., TradePoint]:
+    """The point of a run of closed forms, changed as is said."""
+
+    def of(reduction: dict[str, Any] | None = None, **changes: Any) -> TradePoint:
+        run = make_run()
+        solution = replace(run.solution, **changes.pop("solution", {}))
+        made = replace(run, solution=solution, **changes)
+        profile = replace(
+            made.profile, reduction=replace(made.profile.reduction, **(reduction or {}))
+        )
+        monkeypatch.setattr("des_cli.tradeoff.point.reduce_profile", lambda *_, **__: made)
+        return trade_point(profile)
+
+    return of
+
+
+def test_a_point_is_named_after_its_first_budget_or_its_weight(told: Any) -> None:
+    budgets = (Budget("seat_g_rms_error_g", 0.1), Budget("joint_deviation_relative", 0.05))
+    found = told({"budget": budgets})
+    assert (found.swept, found.value) == ("seat_g_rms_error_g", 0.1)
+    found = told({"budget": (), "r2": np.array([1.0, 2.0, 6.0])})
+    assert (found.swept, found.value, found.control) == ("r2", 3.0, "scalar")
+
+
+def test_a_point_has_the_numbers_of_the_metrics(told: Any) -> None:
+    found = told()
+    metrics = make_run().metrics
+    for part in PARTS:
+        assert getattr(found, f"{part}_reduction") == metrics["coriolis"][part]["reduction"]
+    assert found.objective_reduction == metrics["coriolis"]["objective"]["reduction"]
+    assert {key: found.fidelity(key) for key in COSTS} == {
+        key: metrics["fidelity"][key] for key in COSTS
+    }
+    turning = metrics["felt"]["seat_angular_acceleration"]["magnitude"]
+    stem = "seat_angular_acceleration"
+    for kind in ("rms", "peak"):
+        assert getattr(found, f"{stem}_{kind}_before_rad_s2") == turning[f"{kind}_before_rad_s2"]
+        assert getattr(found, f"{stem}_{kind}_rad_s2") == turning[f"{kind}_after_rad_s2"]
+    assert (found.status, found.cost, found.iterations) == ("converged", 0.2590558, 6)
+
+
+def test_one_joint_beyond_its_limits_is_enough(told: Any) -> None:
+    metrics = make_run().metrics
+    for beyond in (None, *JOINTS):
+        for joint, load in metrics["limits"]["modified"].items():
+            load["ok"] = joint != beyond
+        assert told(results=read_metrics(metrics)).limits_ok is (beyond is None)
+
+
+def test_a_failed_check_makes_it_unverified_with_its_words(told: Any) -> None:
+    checks = (
+        Check("a", "the optimality", 0.5, 1.0),
+        Check("b", "the tracking error", 0.02, 0.001),
+        Check("c", "the cab's jerk", float("nan"), 1.0),
     )
-    assert float(curve(by_budget, "optimum")[1]["objective_reduction"]) > slow + 0.1
+    found = told(checks=checks)
+    assert found.status == "unverified"
+    assert found.message == (
+        "verification failed: the tracking error is 0.02, tolerance 0.001; "
+        "the cab's jerk is nan, tolerance 1"
+    )
+    assert not found.solved
+    assert told(checks=checks[:1]).status == "converged"
+
+
+def test_without_a_solution_there_is_a_reason_and_no_number(told: Any) -> None:
+    found = told(
+        solution={"status": "infeasible", "message": "No such motion."},
+        checks=(Check("a", "the optimality", 2.0, 1.0),),
+    )
+    assert (found.status, found.message) == ("infeasible", "No such motion.")
+    assert (found.objective_reduction, found.cost, found.limits_ok) == (None, None, None)
+    assert found.iterations == 6
+
+
+def test_a_weight_of_all_joints_is_told_without_rounding() -> None:
+    assert mean_weight(np.full(3, 0.1)) == 0.1  # of which numpy's mean is another double
+    assert mean_weight(np.array([1.0, 2.0, 6.0])) == 3.0
