@@ -12,7 +12,7 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
-from des_cli.model.metric import Budget
+from des_cli.model.metric import FACTOR_DEVIATION, JOINT_DEVIATION, SEAT_RATE_DEVIATION, Budget
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Reduction
 from des_cli.model.solution import Iteration
@@ -21,11 +21,11 @@ from des_cli.reduction.limits import find_violations
 from des_cli.reduction.problem import pose_problem
 from des_cli.reduction.solve import executable_motion, find_motion, moves_freely, solve
 from tests.support.claims import profile_of
-from tests.support.free_motions import JOINTS, RATE, smooth
+from tests.support.free_motions import smooth
 
 MOTION = smooth(40)
 FACTORS = Reduction(control="per-joint", limits="warn", ends="free", budget=(), r2=np.full(3, 0.3))
-BUDGETS = (Budget(JOINTS, 0.05),)
+BUDGETS = (Budget(JOINT_DEVIATION, 0.05),)
 
 
 def desired_of(motion: Motion) -> DesiredMotion:
@@ -56,7 +56,10 @@ def with_corner(motion: Motion, joint: int, rate: float) -> Motion:
         (
             {
                 "control": "per-joint",
-                "budget": (Budget(RATE, 0.1), Budget("mean_square_one_minus_p", 0.1)),
+                "budget": (
+                    Budget(SEAT_RATE_DEVIATION, 0.1),
+                    Budget(FACTOR_DEVIATION, 0.1),
+                ),
             },
             False,
         ),
@@ -110,7 +113,7 @@ def test_a_budget_is_spent_and_brings_weights_of_its_own() -> None:
     np.testing.assert_array_equal(posed.tracking, 0.0)
     assert posed.r2[0] < 1e-3 * problem.r2[0]
     chains = (problem.chain, problem.chain)
-    spent = Deviation.between(MOTION, solution.modified, chains, DES.gravity).value(JOINTS)
+    spent = Deviation.between(MOTION, solution.modified, chains, DES.gravity).value(JOINT_DEVIATION)
     assert spent == pytest.approx(0.05, rel=1e-2)
 
 
@@ -163,12 +166,14 @@ def test_a_motion_that_the_limits_change_too_much_is_refused() -> None:
     assert found.problem.reference is found.desired
     chain = chain_of(DES, asked.seat)
     change = Deviation.between(broken, found.desired, (chain, chain), DES.gravity)
-    assert change.value(RATE) > 0.1
+    assert change.value(SEAT_RATE_DEVIATION) > 0.1
 
 
 def test_smoothing_that_spends_the_budget_alone_is_refused() -> None:
     target = desired_of(smooth(40, amplitude=((0.6, 0.0, 0.15), (0.1, 0.3, 0.0), (-0.2, 0.1, 0.0))))
-    asked = profile_of(MOTION, replace(FACTORS, control="scalar", budget=(Budget(RATE, 0.01),)))
+    asked = profile_of(
+        MOTION, replace(FACTORS, control="scalar", budget=(Budget(SEAT_RATE_DEVIATION, 0.01),))
+    )
     refused = find_motion(asked, desired_of(MOTION), target)
     assert refused.solution.status == "changed"
     assert "smoothing alone spends seat rate" in refused.solution.message
