@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from des_cli.kinematics.chain import chain_of
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import OccupantBounds, Seat
 from des_cli.model.machines import DES
@@ -20,6 +22,8 @@ from des_cli.model.metric import (
 )
 from des_cli.model.motion import Motion
 from des_cli.model.solution import Iteration
+from des_cli.reduction.executable import sample_spline
+from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free.answers import Answers, StepLog
 from des_cli.reduction.free.task import FreeTask
 from des_cli.solver.barrier import BoundaryStatus, Outcome, Step
@@ -172,9 +176,15 @@ def unreachable(task: FreeTask) -> str:
 def test_budgets_that_the_start_exceeds_are_named_with_what_can_be_done(limits: str) -> None:
     """The spline's own miss is beyond the second of the budgets' integrals."""
     budget = {ATTITUDE_ERROR: 10.0, SEAT_G_ERROR: 0.5, SEAT_RATE_DEVIATION: 1e-9}
-    told = unreachable(task_of(DESIRED, budget, limits=limits))
-    assert "seat rate " in told
-    assert "instead of 1e-09" in told
+    desired = smooth(400)
+    task = task_of(desired, budget, limits=limits)
+    told = unreachable(task)
+    named = re.search(r"seat rate (\S+) instead of 1e-09", told)
+    assert named
+    chains = 2 * (chain_of(DES, Seat()),)
+    table = sample_spline(fit(task, 20), desired.t)
+    missed = Deviation.between(desired, table, chains, DES.gravity).value(SEAT_RATE_DEVIATION)
+    assert 0.5 < float(named[1]) / missed < 2.0  # it sways between the points that tell it
     assert "G error" not in told
     assert "attitude" not in told
     if limits == "enforce":
