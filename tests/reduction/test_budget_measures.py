@@ -7,15 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.orientation import body_jacobian
 from des_cli.kinematics.response import respond
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
 from des_cli.reduction.budget_measures import measure_of
-from des_cli.reduction.felt_budget_measures import SeatAccelerationRows
 from des_cli.reduction.transcription import Transcription
+from tests.support.seat_turning import angular_acceleration
 
 BUDGET = 0.3
 INTEGRALS = [
@@ -43,19 +41,6 @@ def x(grid):
 
 def trapezoids(step, sides):
     return float(np.sum(0.5 * step * np.sum(sides, axis=1)))
-
-
-def angular_acceleration(motion):
-    """dW/dt in seat axes on sides: the derivative of J theta' along the motion by differences."""
-    chain, h = chain_of(DES, Seat()), 1e-5
-    acceleration = motion.acceleration[:, None, :]
-
-    def spin(s):
-        angle = motion.angle_sides + s * motion.rate_sides + 0.5 * s**2 * acceleration
-        rate = motion.rate_sides + s * acceleration
-        return (body_jacobian(chain, angle) @ rate[..., None])[..., 0]
-
-    return (spin(h) - spin(-h)) / (2.0 * h)
 
 
 def metric(name, grid, x):
@@ -164,15 +149,3 @@ def test_the_ratio_of_the_root_mean_squares(grid, x):
     move, h = np.random.default_rng(6).normal(size=x.shape), 1e-5
     slope = (measure.value(x + h * move) - measure.value(x - h * move)) / (2.0 * h)
     assert np.sum(measure.expand(x).gradient * move) == pytest.approx(slope, rel=1e-6)
-
-
-def test_the_ratio_of_the_peaks_bounds_both_ends_of_every_interval(grid, x):
-    before, after = sizes(grid, x)
-    rows = SeatAccelerationRows(grid, 1.1)
-    expected = (after / (1.1 * before.max())) ** 2
-    np.testing.assert_allclose(rows.value(x), expected, rtol=1e-8)
-    move, h = np.random.default_rng(6).normal(size=x.shape), 1e-5
-    slope = (rows.value(x + h * move) - rows.value(x - h * move)) / (2.0 * h)
-    left, right = rows.jacobian(x)
-    found = left @ move[:-1, :, None] + right @ move[1:, :, None]
-    np.testing.assert_allclose(found[..., 0], slope, rtol=1e-6, atol=1e-7)

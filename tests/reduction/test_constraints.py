@@ -7,12 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from des_cli.kinematics.chain import seat_rotation
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
-from des_cli.reduction.attitude_rows import AttitudeRows
 from des_cli.reduction.constraints import MARGIN, AngleRows
 from des_cli.reduction.transcription import Transcription
+from tests.support.differences import along
 
 
 @pytest.fixture(params=["desired", "adapted"])
@@ -29,20 +28,10 @@ def x(grid):
     return grid.desired + 0.1 * np.random.default_rng(4).normal(size=grid.desired.shape)
 
 
-def along(function, x, move, h=1e-3):
-    """Sixth-order difference of a function along a direction."""
-    weights = {1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
-    return sum(
-        w * (function(x + k * h * move) - function(x - k * h * move)) / h
-        for k, w in weights.items()
-    )
-
-
 def test_jacobians_and_curvatures(grid, x):
     rng = np.random.default_rng(5)
-    attitude = AttitudeRows(grid.problem.chain, grid.problem.desired.angle, None, 20.0)
     assert len(grid.rows) == 4
-    for rows in (*grid.rows, attitude):
+    for rows in grid.rows:
         move, multiplier = rng.normal(size=x.shape), rng.normal(size=rows.value(x).shape)
 
         def pull_back(at, rows=rows, multiplier=multiplier):
@@ -110,17 +99,3 @@ def test_a_desired_angle_at_its_limit_keeps_its_bound():
     rows = AngleRows(DES, Motion(t, angle, rate[:, 0], rate[:, 1]), 4)
     x = np.hstack([angle, np.ones((2, 1))])
     assert (np.abs(rows.value(x)) <= 1.0 + 1e-12).all()
-
-
-def test_an_attitude_reaches_its_bound_at_the_angle_between_the_seats(grid, x):
-    chain, target = grid.problem.chain, grid.problem.desired.angle
-    made, wanted = (seat_rotation(chain, each) for each in (x[:, :3], target))
-    cosine = 0.5 * (np.einsum("kij,kij->k", made, wanted) - 1.0)
-    angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-    k = int(np.argmax(angle))
-    value = AttitudeRows(chain, target, None, angle[k]).value(x)[:, 0]
-    assert np.argmax(value) == k
-    assert value[k] == pytest.approx(1.0, rel=1e-9)
-    np.testing.assert_allclose(
-        value, (np.sin(np.radians(angle / 2)) / np.sin(np.radians(angle[k] / 2))) ** 2, atol=1e-9
-    )

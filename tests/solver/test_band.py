@@ -9,6 +9,7 @@ import pytest
 
 from des_cli.solver.band import BandCholesky, SymmetricBand
 from des_cli.solver.spline import STENCILS, Ends
+from tests.support.bands import dense
 
 KEPT = list(product([False, True], repeat=4))
 HELD = list(product([False, True], repeat=2))
@@ -17,17 +18,6 @@ HELD = list(product([False, True], repeat=2))
 @pytest.fixture
 def rng():
     return np.random.default_rng(3)
-
-
-def dense(band):
-    """The whole matrix."""
-    n, d, width = band.data.shape
-    rows = band.data.reshape(n * d, width)
-    matrix = np.zeros((n * d, n * d))
-    for i in range(n * d):
-        for k in range(min(width, n * d - i)):
-            matrix[i, i + k] = matrix[i + k, i] = rows[i, k]
-    return matrix
 
 
 def difference_matrix(n, order, step):

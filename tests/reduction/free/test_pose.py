@@ -9,7 +9,7 @@ import pytest
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond_on
-from des_cli.model.machine import OccupantBounds, Seat
+from des_cli.model.machine import OccupantBounds
 from des_cli.model.machines import DES
 from des_cli.model.metric import PEAK_METRICS
 from des_cli.model.motion import Shortfall
@@ -128,66 +128,12 @@ def test_the_felt_error_is_from_the_desired_motion_without_its_cross_coupling(ob
     assert program.values(x).cost == pytest.approx(expected, rel=3e-3)
 
 
-def test_occupant_bounds_are_at_one_where_the_felt_is_at_its_bound():
-    occupant = OccupantBounds(
-        gx=(-1.5, 2.0), gy=(-3.0, 0.7), gz=(0.2, 1.4), g_onset=0.6, angular_acceleration=0.9
-    )
-    task = task_of(DESIRED, {}, replace(DES, occupant=occupant))
-    program = program_of(task, INTERVALS)
-    local = program.values(np.zeros(program.size)).local
-    felt = respond_on(task.chain, DES.gravity, DESIRED)
-    components, norm, onset = np.split(local, [6 * 2 * INTERVALS, 7 * 2 * INTERVALS])
-    g = felt.seat_g.reshape(-1, 3)
-    # rows in the order gx most, gx least, gy most, ...
-    for row, (axis, bound, sign) in enumerate(
-        [(0, 2.0, 1), (0, -1.5, -1), (1, 0.7, 1), (1, -3.0, -1), (2, 1.4, 1), (2, 0.2, -1)]
-    ):
-        expected = 1.0 + np.max(sign * (g[:, axis] - bound)) / max(abs(bound), 1.0)
-        found = np.max(components.reshape(6, -1)[row])
-        assert found == pytest.approx(expected, abs=0.02)
-    length = np.linalg.norm(felt.seat_angular_acceleration, axis=-1).max()
-    assert np.sqrt(norm.max()) == pytest.approx(length / 0.9, rel=0.02)
-    rise = np.diff(felt.seat_g.mean(axis=1), axis=0) / DESIRED.step[1:, None]
-    assert onset.max() == pytest.approx(np.abs(rise).max() / 0.6, rel=0.03)
-    assert len(onset) == 6 * INTERVALS
-
-
 def test_what_is_not_enforced_is_not_bounded():
     occupant = OccupantBounds(gx=(-1.0, 1.0))
     task = task_of(DESIRED, {}, replace(DES, occupant=occupant), limits="warn")
     program = program_of(task, INTERVALS)
     assert program.bounds.size == 0
     assert program.values(np.zeros(program.size)).local.size == 0
-
-
-ENDS = {
-    "free": (0, 0, 0),
-    "match-start": (1, 0, 0),
-    "match-rates": (1, 0, 1),
-    "match-both": (1, 1, 1),
-}
-
-
-@pytest.mark.parametrize(("name", "kept"), ENDS.items(), ids=list(ENDS))
-def test_ends(name, kept):
-    task = task_of(DESIRED, {}, ends=name, optimise=("cab_start",), hold=frozenset({"fork"}))
-    ends, base = task.ends, task.base_ends
-    np.testing.assert_array_equal(ends.start_value, [True, True, False])
-    np.testing.assert_array_equal(ends.held, [False, True, False])
-    for flags, expected in zip((ends.start_rate, ends.end_value, ends.end_rate), kept, strict=True):
-        np.testing.assert_array_equal(flags, bool(expected))
-    assert np.all(base.start_value)  # the executable motion starts where it is asked to
-    assert not np.any(base.held)
-    np.testing.assert_array_equal(base.end_rate, ends.end_rate)
-
-
-def test_seats_turn_in_the_chains_order():
-    task = task_of(DESIRED, {}, optimise=("seat_pitch", "seat_yaw"))
-    turned = turned_seat(task, np.array([0.1, -0.2]))
-    assert (turned.yaw, turned.pitch) == pytest.approx((np.pi / 2 + 0.1, -0.2))
-    alone = task_of(DESIRED, {}, seat=Seat(0.3, 0.4), optimise=("seat_pitch",))
-    turned = turned_seat(alone, np.array([0.5]))
-    assert (turned.yaw, turned.pitch) == pytest.approx((0.3, 0.9))
 
 
 def test_the_seats_budgets_are_those_of_the_turned_seat():

@@ -9,6 +9,7 @@ from des_cli.reduction.free import windows
 from des_cli.reduction.free.windows import JOINTS, POINTS, WINDOW, Windows
 from des_cli.solver.band import SymmetricBand
 from des_cli.solver.spline import SplineGrid
+from tests.support.bands import dense
 
 VARIABLES = ((0, 1), (1, 0), (1, 2), (2, 1))
 GRID = SplineGrid(0.4, 0.3, 11)
@@ -35,16 +36,6 @@ def matrix_of(made):
     """The local variables at all points by the control points, (v, points, 3 n)."""
     columns = [gather_all(made, e.reshape(-1, JOINTS)) for e in np.eye(SIZE)]
     return np.stack(columns, axis=-1)
-
-
-def dense(band):
-    n, d, width = band.data.shape
-    rows, size = band.data.reshape(n * d, width), n * d
-    matrix = np.zeros((size, size))
-    for i in range(size):
-        for k in range(min(width, size - i)):
-            matrix[i, i + k] = matrix[i + k, i] = rows[i, k]
-    return matrix
 
 
 def at_of(made, span):
