@@ -96,6 +96,15 @@ def test_a_command_beyond_any_machine_is_named_at_its_first_row_and_counted() ->
     assert found == "x.csv:5: tilt: is beyond 1e+06 rad or rad/s (2 such cells)"
 
 
+@pytest.mark.parametrize("suffix", ["g", "m_s2"])
+def test_a_recorded_g_is_bounded_as_an_asked_one(suffix: str) -> None:
+    values = np.array([1.0, 100.0, -100.01, 150.0]) * 9.81456
+    found = complaints_of_magnitudes(
+        [TIME, column("gz", suffix)], {"t": [0, 1, 2, 3], "gz": values.tolist()}
+    )
+    assert found == f"x.csv:7: gz_{suffix}: is beyond 100 g (2 such cells)"
+
+
 def test_degrees_under_the_name_of_radians_are_asked_about_in_one_line() -> None:
     columns = [TIME, column("p", "rad_s"), column("q", "rad_s", "gyro y"), column("r", "rad_s")]
     values = {"t": [0.0, 1, 2], "p": [0.0, 0, 0], "q": [60.0, 61, -64.25], "r": [-40.0, 0, 0]}
