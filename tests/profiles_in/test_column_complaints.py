@@ -147,6 +147,11 @@ def test_a_column_without_its_unit_is_told_what_it_needs(name: str, words: str) 
     assert words in unusable(column(name))
 
 
+@pytest.mark.parametrize("in_file", ["gyro x", "a;b", "x'y", "p"])
+def test_the_option_for_a_name_without_a_unit_can_be_typed(in_file: str) -> None:
+    assert typed(unusable(column("p", in_file))) == ["--column", f"p_rad_s={in_file}"]
+
+
 def test_columns_of_one_quantity_are_chosen_between_unless_they_have_one_name() -> None:
     both = [column("p_rpm"), column("p_rad_s", "roll\trate")]
     assert repeated("p", both) == (
