@@ -67,6 +67,9 @@ def test_of_several_kinds_the_quantities_that_are_there_are_told() -> None:
     assert several_kinds([JOINT_COMMANDS, BODY_RATES], found) == (
         "holds both joint commands (fork) and body rates (p, r); choose with --column"
     )
+    assert several_kinds([JOINT_COMMANDS, ASKED_G], found) == (
+        "holds both joint commands (fork) and G (gz); choose with --column"
+    )
     assert several_kinds([BODY_RATES, ASKED_G], found) == (
         "holds both body rates (p, r) and G (gz); choose with --column: "
         "p and q can be followed beside G, and no joint is left for r"

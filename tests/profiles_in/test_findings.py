@@ -41,10 +41,13 @@ def test_problems_come_once_each_in_the_order_of_the_file_and_options_last() -> 
     root = parse_yaml("".join(f"k{n}: 1\n" for n in range(1, 11)) + TEXT, "x:9")
     assert apply_settings(root, ["seat.yaw_deg=1"]) == []
     findings = Findings(root)
-    paths: list[list[Step]] = [["seat", "yaw_deg"], ["joints", "arm_rpm", 1, "to_s"], ["k9"]]
-    for path in [*paths, ["joints", "arm_rpm", 1, "from_s"], ["k9"], ["k10"]]:
+    segment: list[Step] = ["joints", "arm_rpm", 1]
+    paths: list[list[Step]] = [
+        ["seat", "yaw_deg"], [*segment, "to_s"], ["k9"], [*segment, "from_s"], ["k9"], ["k10"]
+    ]  # fmt: skip
+    for path in paths:
         findings.add(path, "is wrong")
-    findings.add(["joints", "arm_rpm", 1, "to_s"], "is unknown", of_key=True)
+    findings.add([*segment, "to_s"], "is unknown", of_key=True)
     assert lines_of(findings) == [
         "x:9:9:5: k9: is wrong",
         "x:9:10:6: k10: is wrong",

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from des_cli.profiles_in.overrides import apply_settings
-from des_cli.profiles_in.setting import Setting, value_of_option
+from des_cli.profiles_in.setting import AnySetting, Setting, value_of_option
 from des_cli.profiles_in.yaml_nodes import parse_yaml
 
 
@@ -47,8 +47,9 @@ def test_a_setting_counts_by_its_key_and_value_however_it_was_said() -> None:
 
 @pytest.mark.parametrize("value", [0.1, 3, "sea: t", "5", "é", [1, [2.5, "a"]], {"from_s": 2}])
 def test_the_text_of_a_setting_sets_the_same_value(value: Any) -> None:
-    roots = [parse_yaml("name: x\n", "x") for _ in range(2)]
     setting = Setting("reduction.r1", value, "--r1")
-    for root, given in zip(roots, (setting, str(setting)), strict=True):
+    either: tuple[AnySetting, ...] = (setting, str(setting))
+    for given in either:
+        root = parse_yaml("name: x\n", "x")
         assert apply_settings(root, [given]) == []
         assert root.plain()["reduction"]["r1"] == value
