@@ -118,7 +118,7 @@ def unusable(column: Column) -> str:
         return f"the column {name}: {needs}, and {column.unit.suffix} is none of them"
     example = spelled(stem)[0]
     unit = _SIGNS.get(example.removeprefix(f"{stem}_"), example.removeprefix(f"{stem}_"))
-    rename = f"--column {example}={plain(column.in_file)} where it is in {unit}"
+    rename = f"{option('--column', f'{example}={column.in_file}')} where it is in {unit}"
     return f"the column {name}: {needs} ({rename})"
 
 

@@ -11,9 +11,11 @@ from des_cli.model.arrays import Floats
 from des_cli.profiles_in.column_kinds import RATES, Column
 from des_cli.profiles_in.csv_header import Header
 from des_cli.profiles_in.csv_table import Rows
+from des_cli.profiles_in.g_schema import MOST_G
 from des_cli.profiles_in.sample_times import SampleTimes
 from des_cli.profiles_in.sampling import MAX_MAGNITUDE
 from des_cli.profiles_in.wording import option, plain
+from des_cli.units import STANDARD_GRAVITY_M_S2
 
 FASTEST = 20.0
 """Rate [rad/s] above which no aircraft turns and no centrifuge: three turns a second. A
@@ -63,10 +65,13 @@ def check_magnitudes(
     for column in chosen:
         if column.stem == "t" or column.unit is None:
             continue
-        wrong = np.flatnonzero(np.abs(by_stem[column.stem]) > MAX_MAGNITUDE)
+        most, words = MAX_MAGNITUDE, f"{MAX_MAGNITUDE:g} rad or rad/s"
+        if column.unit.quantity == "specific_force":
+            most, words = MOST_G * STANDARD_GRAVITY_M_S2, f"{MOST_G:g} g"
+        wrong = np.flatnonzero(np.abs(by_stem[column.stem]) > most)
         if len(wrong):
             place = f"{header.label}:{rows.lines[int(wrong[0])]}"
-            what = f"is beyond {MAX_MAGNITUDE:g} rad or rad/s ({len(wrong)} such cells)"
+            what = f"is beyond {words} ({len(wrong)} such cells)"
             complaints.append(Complaint(place, f"{plain(column.in_file)}: {what}"))
 
 

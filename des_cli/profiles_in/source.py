@@ -51,7 +51,7 @@ def decode(data: bytes, label: str) -> str:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        byte, line = _first_wrong_byte(data, error)
+        byte, line = _first_wrong_byte(error)
         what = f"is not UTF-8 text (byte {byte}); save it as UTF-8"
         raise ProfileError([Complaint(f"{label}:{line}", what)]) from None
     return _without_nul(text, label)
@@ -74,13 +74,15 @@ def decode_table(data: bytes, label: str) -> tuple[str, tuple[str, ...]]:
     except UnicodeDecodeError as error:
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             raise ProfileError([Complaint(label, "is UTF-16 text; save it as UTF-8")]) from None
-        byte, line = _first_wrong_byte(data, error)
+        byte, line = _first_wrong_byte(error)
     remark = f"the file is not UTF-8 (byte {byte} in line {line}): it is read as Latin-1"
-    return _without_nul(data.decode("latin-1"), label), (remark,)
+    text = data.removeprefix(codecs.BOM_UTF8).decode("latin-1")
+    return _without_nul(text, label), (remark,)
 
 
-def _first_wrong_byte(data: bytes, error: UnicodeDecodeError) -> tuple[str, int]:
+def _first_wrong_byte(error: UnicodeDecodeError) -> tuple[str, int]:
     """Return the first byte that is not UTF-8, and its line."""
+    data = error.object  # without the byte-order mark, from behind which the decoder counts
     return f"0x{data[error.start]:02x}", data.count(b"\n", 0, error.start) + 1
 
 

@@ -4,7 +4,6 @@ import pytest
 
 from des_cli.errors import ProfileError
 from des_cli.profiles_in.csv_header import Header, is_comment, split_header
-from des_cli.profiles_in.csv_table import column_text, read_columns
 from des_cli.profiles_in.dialect import Dialect
 
 
@@ -69,16 +68,6 @@ def test_a_row_of_units_has_units_and_no_number(second: str, units: tuple[str, .
     header = split_header(f"a,b\n{second}\n1,2\n", "x")
     assert header.units == units
     assert header.lines == (2 if units else 1)
-
-
-def test_rows_know_their_lines_past_comments_and_line_breaks_in_cells() -> None:
-    text = '# top\na,b\n1,"x\n# no comment"\n# comment\n2,y\n% comment\n\n'
-    header = split_header(text, "x")
-    rows = read_columns(header, [0])
-    assert [*rows.lines] == [3, 6]
-    assert rows.values.tolist() == [[1], [2]]
-    assert rows.comments == 2
-    assert column_text(header, 1) == ["x\n# no comment", "y"]
 
 
 def test_what_is_a_comment() -> None:

@@ -65,6 +65,13 @@ def test_the_digest_tells_every_input_apart() -> None:
     assert load(SMALL).sha256 == load(SMALL).sha256
 
 
+def test_a_yaml_profile_must_be_utf_8(tmp_path: Path) -> None:
+    path = tmp_path / "latin.yaml"
+    path.write_bytes(SMALL.encode() + b"# \xe9t\xe9\n")
+    with pytest.raises(ProfileError, match=r"latin\.yaml:8: is not UTF-8 text \(byte 0xe9\)"):
+        load_profile(path)
+
+
 def test_renaming_columns_of_a_yaml_profile_is_wrong_use() -> None:
     with pytest.raises(UsageError, match="renames columns of a CSV profile"):
         load_profile("cobra", columns={"t_s": "t"})
