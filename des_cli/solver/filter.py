@@ -87,7 +87,7 @@ class Filter:
         if current.violation <= self.small and steep:
             return trial.cost <= current.cost + ARMIJO * length * slope + noise
         better = (
-            trial.violation <= (1.0 - MARGIN) * current.violation
+            trial.violation < (1.0 - MARGIN) * current.violation
             or trial.cost <= current.cost - MARGIN * current.violation + noise
         )
         if better:

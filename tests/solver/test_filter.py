@@ -29,6 +29,12 @@ def test_a_trial_must_be_better_in_cost_or_violation(trial: Trial, accepted: boo
     assert Filter(1.0, 1.0).accepts(Trial(1.0, 5.0), trial, 1.0, FLAT) is accepted
 
 
+def test_where_nothing_is_violated_nothing_can_be_gained_but_in_cost() -> None:
+    here = Trial(0.0, 5.0)
+    assert Filter(1.0, 1.0).accepts(here, Trial(0.0, 4.9), 1.0, FLAT)
+    assert not Filter(1.0, 1.0).accepts(here, Trial(0.0, 5.1), 1.0, FLAT)
+
+
 def test_a_trial_must_not_be_worse_in_both_than_what_was_left_before() -> None:
     kept = Filter(1.0, 1.0)
     assert kept.accepts(Trial(1.0, 5.0), Trial(0.1, 8.0), 1.0, FLAT)
