@@ -68,8 +68,8 @@ def compare(problem: Problem, modified: Motion, chain: Chain | None = None) -> B
     p = _constant_factor(problem, before, after) if before > after else 1.0
     constant = follow(desired, np.full((len(desired.t), 1), p))
     return Baselines(
-        reduction=_reduction(before, after),
-        sweep_reduction=None if swept is None else _reduction(before, swept_energy),
+        reduction=relative_reduction(before, after),
+        sweep_reduction=None if swept is None else relative_reduction(before, swept_energy),
         sweep_deviation=None if swept is None else joint_deviation(desired, swept),
         constant_p=p,
         constant_deviation=joint_deviation(desired, constant),
@@ -79,10 +79,10 @@ def compare(problem: Problem, modified: Motion, chain: Chain | None = None) -> B
 def objective_reduction(problem: Problem, modified: Motion) -> float | None:
     """Return the reduction of int c' R1 c by a motion, None where there is nothing to reduce."""
     before = weighted_energy(problem, problem.reference)
-    return _reduction(before, weighted_energy(problem, modified))
+    return relative_reduction(before, weighted_energy(problem, modified))
 
 
-def _reduction(before: float, after: float) -> float | None:
+def relative_reduction(before: float, after: float) -> float | None:
     """Return 1 - after / before, None where there was nothing before."""
     return None if before <= NOTHING else 1.0 - after / before
 

@@ -16,10 +16,9 @@ from des_cli.model.metric import (
 from des_cli.model.metrics import Change, Changes, Executable
 from des_cli.model.motion import DesiredMotion, Motion, Shortfall, integrate_sides
 from des_cli.model.profile import Profile
-from des_cli.reduction.baseline import joint_deviation
+from des_cli.reduction.baseline import joint_deviation, relative_reduction
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.limits import find_violations
-from des_cli.results.coriolis import relative_reduction
 
 _TOLD: tuple[MetricKey, ...] = (
     SEAT_RATE_DEVIATION,

@@ -10,6 +10,7 @@ from des_cli.model.felt import TurningSizes
 from des_cli.model.metrics import CrossCoupling, Objective, Part
 from des_cli.model.motion import integrate_sides
 from des_cli.model.response import Response
+from des_cli.reduction.baseline import relative_reduction
 from des_cli.results.felt import peak, rms
 
 
@@ -41,8 +42,3 @@ def _part(response: Response, component: Component) -> Floats:
         return np.asarray(np.linalg.norm(response.coriolis_seat, axis=-1))
     report = component.axes == "report"
     return (response.coriolis_report if report else response.coriolis_seat)[..., component.index]
-
-
-def relative_reduction(before: float, after: float) -> float | None:
-    """Return 1 - after / before, None where there was nothing before."""
-    return 1.0 - after / before if before > 1e-24 else None

@@ -14,9 +14,10 @@ the acceleration does not.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-from des_cli.model.machine import JOINTS, JointLimits
+from des_cli.model.machine import JOINTS, Joint, JointLimits
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.verify.claim import Claim
@@ -90,23 +91,27 @@ def check_stopping(claim: Claim) -> list[Check]:
     """Measure by how much a joint passes a limit on its way to the table, and after it."""
     if not claim.enforced:
         return []
-    motion = claim.table
-    checks = []
-    for j, (joint, limit) in enumerate(zip(JOINTS, claim.profile.machine.limits, strict=True)):
-        for key, name, state, cure in (
-            ("start", "to reach the first row from rest", _first(motion, j), "begin"),
-            ("end", "to come to rest after the last row", _last(motion, j), "end"),
-        ):
-            checks.append(
-                Check(
-                    f"stopping.{joint}.{key}",
-                    f"excess of the {joint} over its limits {name}",
-                    excess(state, limit),
-                    STOPPING_TOLERANCE,
-                    f"{cure} the maneuver slower, or farther from the limit",
-                )
-            )
-    return checks
+    motion, limits = claim.table, claim.profile.machine.limits
+    return [
+        check
+        for j, (joint, limit) in enumerate(zip(JOINTS, limits, strict=True))
+        for check in stopping_checks(
+            joint, limit, _first(motion, j), _last(motion, j), STOPPING_TOLERANCE
+        )
+    ]
+
+
+def stopping_checks(
+    joint: Joint, limit: JointLimits, first: State, last: State, tolerance: float
+) -> Iterator[Check]:
+    """Measure the way from rest to a joint's first state, and from its last to rest."""
+    for key, way, state in (
+        ("start", "to reach the first row from rest", first.reversed),
+        ("end", "to come to rest after the last row", last),
+    ):
+        name = f"excess of the {joint} over its limits {way}"
+        cure = f"let the {joint} {'begin' if key == 'start' else 'end'} slower, or farther from it"
+        yield Check(f"stopping.{joint}.{key}", name, excess(state, limit), tolerance, cure)
 
 
 def excess(state: State, limit: JointLimits) -> float:
@@ -218,7 +223,7 @@ def _first(motion: Motion, joint: int) -> State:
         float(motion.angle[0, joint]),
         float(motion.rate_start[0, joint]),
         float(motion.acceleration[0, joint]),
-    ).reversed
+    )
 
 
 def _last(motion: Motion, joint: int) -> State:

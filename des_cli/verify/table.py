@@ -25,7 +25,7 @@ from des_cli.model.run import Check
 from des_cli.verify.felt import SeatChain
 from des_cli.verify.limits import LIMIT_TOLERANCE
 from des_cli.verify.occupant import excesses
-from des_cli.verify.stopping import State, excess
+from des_cli.verify.stopping import State, stopping_checks
 
 ROUNDING = 4.0 * float(np.finfo(np.float64).eps)
 """Relative error of a number in a table: two conversions of units and the text."""
@@ -186,18 +186,8 @@ def check_against(
     checks: list[Check] = []
     for joint, limit, course in zip(JOINTS, machine.limits, played.courses, strict=True):
         checks += _limits(joint, limit, course)
-        for key, name, state in (
-            ("start", "to reach the first row from rest", course.end(last=False).reversed),
-            ("end", "to come to rest after the last row", course.end(last=True)),
-        ):
-            checks.append(
-                Check(
-                    f"stopping.{joint}.{key}",
-                    f"excess of the {joint} over its limits {name}",
-                    excess(state, limit),
-                    STOPPING_TOLERANCE,
-                )
-            )
+        first, last = course.end(last=False), course.end(last=True)
+        checks += stopping_checks(joint, limit, first, last, STOPPING_TOLERANCE)
     motion = played.middles
     if machine.occupant.bounded and len(motion.t) > 1:
         felt = SeatChain(machine, seat).along(motion)

@@ -9,7 +9,8 @@ import pytest
 
 from des_cli.model.arrays import Floats
 from des_cli.model.response import Response
-from des_cli.results.coriolis import coriolis_metrics, relative_reduction
+from des_cli.reduction.baseline import relative_reduction
+from des_cli.results.coriolis import coriolis_metrics
 from tests.support.sway import coriolis_parts, integral, reduced_sway
 
 STEP = np.array([1.0, 3.0])
