@@ -20,11 +20,16 @@ def test_without_arguments_every_run_under_runs(invoke, tmp_path: Path) -> None:
     page = (tmp_path / "report.html").read_text()
     assert "one" in page
     assert "two" in page
-    assert invoke("report").exit_code == 0, "the page is replaced"
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("two_runs")
+@pytest.mark.usefixtures("two_runs", "undrawn")
+def test_a_second_report_replaces_the_first(invoke, tmp_path: Path) -> None:
+    (tmp_path / "report.html").write_text("old")
+    assert invoke("report").exit_code == 0
+    assert "two" in (tmp_path / "report.html").read_text()
+
+
+@pytest.mark.usefixtures("two_runs", "undrawn")
 def test_named_runs_to_a_file_or_stdout(invoke, tmp_path: Path) -> None:
     assert invoke("report", "runs/one", "-o", "page.html").exit_code == 0
     result = invoke("report", "runs/one", "-o", "-")
@@ -33,8 +38,7 @@ def test_named_runs_to_a_file_or_stdout(invoke, tmp_path: Path) -> None:
     assert result.stdout != invoke("report", "runs/two", "-o", "-").stdout
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("two_runs")
+@pytest.mark.usefixtures("two_runs", "undrawn")
 def test_a_run_named_twice_is_on_the_page_once(invoke) -> None:
     result = invoke("report", "runs", "runs/one", "-o", "page.html")
     assert result.stderr == "2 runs in page.html\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Sequence
 
@@ -64,7 +65,30 @@ def render_report(runs: Sequence[StoredRun]) -> str:
     """
     if not runs:
         raise ValueError("a report needs at least one run")
-    environment = jinja2.Environment(
+    metrics = [read_metrics(run.metrics) for run in runs]
+    comparison = comparison_rows(metrics)
+    page = (
+        _environment()
+        .get_template("page.html.j2")
+        .render(
+            sections=[
+                run_section(run, read, label, position)
+                for position, (run, read, label) in enumerate(
+                    zip(runs, metrics, labels(runs), strict=True), start=1
+                )
+            ],
+            comparison=comparison,
+            attention=any(cell.mark == "bad" for row in comparison for cell in row.cells),
+            nomenclature=NOMENCLATURE,
+        )
+    )
+    return _NOT_HTML.sub("\ufffd", page)
+
+
+@functools.cache
+def _environment() -> jinja2.Environment:
+    """Return the environment that keeps the compiled templates: compiling takes most of a page."""
+    return jinja2.Environment(
         loader=jinja2.PackageLoader("des_cli.show.page", "templates"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
@@ -72,17 +96,3 @@ def render_report(runs: Sequence[StoredRun]) -> str:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    metrics = [read_metrics(run.metrics) for run in runs]
-    comparison = comparison_rows(metrics)
-    page = environment.get_template("page.html.j2").render(
-        sections=[
-            run_section(run, read, label, position)
-            for position, (run, read, label) in enumerate(
-                zip(runs, metrics, labels(runs), strict=True), start=1
-            )
-        ],
-        comparison=comparison,
-        attention=any(cell.mark == "bad" for row in comparison for cell in row.cells),
-        nomenclature=NOMENCLATURE,
-    )
-    return _NOT_HTML.sub("\ufffd", page)

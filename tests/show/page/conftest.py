@@ -12,7 +12,6 @@ import pytest
 from des_cli.model.run import Run
 from des_cli.runs_out.run_folder import StoredRun
 from des_cli.runs_out.tables import trajectory_columns
-from des_cli.show.page import section
 
 MakeRun = Callable[..., Run]
 
@@ -26,9 +25,3 @@ def stored(synthetic_run: MakeRun) -> Callable[..., StoredRun]:
         return StoredRun(name, Path("runs/x"), metrics, trajectory_columns(run), manifest)
 
     return make
-
-
-@pytest.fixture
-def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No figures, for tests that look at the words only."""
-    monkeypatch.setattr(section, "draw_plots", lambda trajectory, metrics: {})

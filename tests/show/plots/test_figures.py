@@ -2,7 +2,6 @@
 
 import io
 import sys
-from collections.abc import Callable
 
 import pytest
 from PIL import Image
@@ -12,15 +11,24 @@ from des_cli.results.reading import read_metrics
 from des_cli.runs_out.tables import trajectory_columns
 from des_cli.show.plots import CAPTIONS, draw_plots
 from tests.support.pictures import BLUE, GREY, area, picture
+from tests.support.runs import make_run
 
-MakeRun = Callable[..., Run]
+
+def figures_of(run: Run) -> dict[str, bytes]:
+    return draw_plots(trajectory_columns(run), run.metrics)
+
+
+@pytest.fixture(scope="module")
+def plain() -> dict[str, bytes]:
+    """The figures of the smallest run, drawn once."""
+    return figures_of(make_run(11))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("control", ["scalar", "per-joint"])
-def test_every_figure_shows_its_curves(synthetic_run: MakeRun, control: str) -> None:
-    run = synthetic_run(101, control=control)
-    figures = draw_plots(trajectory_columns(run), run.metrics)
+def test_every_figure_shows_its_curves(control: str) -> None:
+    run = make_run(101, control=control)
+    figures = figures_of(run)
     assert list(figures) == list(CAPTIONS)
     widths = set()
     for name, png in figures.items():
@@ -33,33 +41,26 @@ def test_every_figure_shows_its_curves(synthetic_run: MakeRun, control: str) -> 
 
 
 @pytest.mark.slow
-def test_equal_runs_give_equal_bytes(synthetic_run: MakeRun) -> None:
-    first, second = (
-        draw_plots(trajectory_columns(run), run.metrics)
-        for run in (synthetic_run(), synthetic_run())
-    )
+def test_equal_runs_give_equal_bytes() -> None:
+    first, second = (figures_of(run) for run in (make_run(), make_run()))
     assert first == second
 
 
 @pytest.mark.slow
-def test_the_users_matplotlibrc_changes_nothing(synthetic_run: MakeRun) -> None:
+def test_the_users_matplotlibrc_changes_nothing(plain: dict[str, bytes]) -> None:
     import matplotlib
 
-    run = synthetic_run()
-    plain = draw_plots(trajectory_columns(run), run.metrics)
     with matplotlib.rc_context(
         {"figure.facecolor": "red", "axes.grid": False, "font.size": 30, "savefig.dpi": 10}
     ):
-        assert draw_plots(trajectory_columns(run), run.metrics) == plain
+        assert figures_of(make_run(11)) == plain
         assert matplotlib.rcParams["font.size"] == 30
 
 
 @pytest.mark.slow
-def test_a_figure_is_of_its_run(synthetic_run: MakeRun) -> None:
-    run, other = synthetic_run(), synthetic_run(control="per-joint")
-    ours = draw_plots(trajectory_columns(run), run.metrics)
-    theirs = draw_plots(trajectory_columns(other), other.metrics)
-    assert [name for name in ours if ours[name] == theirs[name]] == ["adjoint"]
+def test_a_figure_is_of_its_run(plain: dict[str, bytes]) -> None:
+    other = figures_of(make_run(11, control="per-joint"))
+    assert [name for name in plain if plain[name] == other[name]] == ["adjoint"]
 
 
 @pytest.mark.slow
@@ -75,39 +76,37 @@ def test_a_figure_is_of_its_run(synthetic_run: MakeRun) -> None:
     ],
 )
 def test_standing_budget_and_changes_are_on_the_figures_they_belong_to(
-    synthetic_run: MakeRun, section: str, change: dict[str, object], figures: set[str]
+    plain: dict[str, bytes], section: str, change: dict[str, object], figures: set[str]
 ) -> None:
-    run = synthetic_run(11)
-    columns = trajectory_columns(run)
-    plain = draw_plots(columns, run.metrics)
-    changed = draw_plots(columns, run.metrics | {section: run.metrics[section] | change})
+    run = make_run(11)
+    metrics = run.metrics | {section: run.metrics[section] | change}
+    changed = draw_plots(trajectory_columns(run), metrics)
     assert {name for name in plain if plain[name] != changed[name]} == figures
 
 
-def test_a_free_motion_has_no_figure_of_factors_and_adjoint(synthetic_run: MakeRun) -> None:
-    run = synthetic_run(11, control="free")
-    figures = draw_plots(trajectory_columns(run), run.metrics)
+def test_a_free_motion_has_no_figure_of_factors_and_adjoint() -> None:
+    run = make_run(11, control="free")
+    figures = figures_of(run)
     assert list(figures) == [name for name in CAPTIONS if name not in ("factor", "adjoint")]
 
 
-def test_pyplot_stays_out(synthetic_run: MakeRun) -> None:
-    run = synthetic_run(11)
-    draw_plots(trajectory_columns(run), run.metrics)
+def test_pyplot_stays_out() -> None:
+    run = make_run(11)
+    figures_of(run)
     assert "matplotlib.pyplot" not in sys.modules
 
 
 @pytest.mark.slow
-def test_no_version_and_no_time_is_in_the_file(synthetic_run: MakeRun) -> None:
-    run = synthetic_run(11)
-    for png in draw_plots(trajectory_columns(run), run.metrics).values():
+def test_no_version_and_no_time_is_in_the_file(plain: dict[str, bytes]) -> None:
+    for png in plain.values():
         facts = Image.open(io.BytesIO(png)).info
         assert set(facts) == {"dpi", "Title", "Software"}
         assert facts["Software"] == "des-coriolis"
 
 
 @pytest.mark.slow
-def test_metrics_of_a_stranger_do_not_stop_the_figures(synthetic_run: MakeRun) -> None:
-    columns = trajectory_columns(synthetic_run(11))
+def test_metrics_of_a_stranger_do_not_stop_the_figures() -> None:
+    columns = trajectory_columns(make_run(11))
     for metrics in (
         {},
         {"solver": 1, "coriolis": []},
