@@ -19,8 +19,15 @@ from des_cli.reduction.attitude_rows import AttitudeRows
 from des_cli.reduction.budget_measures import measure_of
 from des_cli.reduction.coarse import grids, refine
 from des_cli.reduction.felt_budget_measures import SeatAccelerationRows
-from des_cli.reduction.optimum import FAR, NEAR, best_of, make_solution
-from des_cli.reduction.problem import Problem
+from des_cli.reduction.optimum import (
+    FAR,
+    NEAR,
+    best_of,
+    make_solution,
+    mean_square,
+    passed_through,
+)
+from des_cli.reduction.problem import FAINT, Problem
 from des_cli.reduction.search import TOLERANCE, Search
 from des_cli.reduction.transcription import Transcription
 from des_cli.solver.interior import Outcome
@@ -56,6 +63,8 @@ def spend_budgets(problem: Problem, budgets: Sequence[Budget], search: Search) -
     -------
     Solution
     """
+    if mean_square(problem) <= FAINT:
+        return passed_through(problem)
     coarsest, *finer = grids(problem)
     grid = _with_budgets(coarsest, budgets)
     best = _from_desired(grid, search)
@@ -77,10 +86,8 @@ def spend_budgets(problem: Problem, budgets: Sequence[Budget], search: Search) -
 def pose_budget(problem: Problem) -> Problem:
     """Return the problem with a small regularising r2 instead of r2 and tracking."""
     m = problem.controls
-    bare = replace(problem, r2=np.zeros(m), tracking=np.zeros(3))
-    grid = Transcription(bare)
-    mean = 2.0 * grid.cost(grid.desired) / grid.weight.sum()
-    return replace(bare, r2=np.full(m, max(REGULARISATION * mean, 1e-9) / m))
+    r2 = max(REGULARISATION * mean_square(problem), 1e-9)
+    return replace(problem, r2=np.full(m, r2 / m), tracking=np.zeros(3))
 
 
 def _with_budgets(problem: Problem, budgets: Sequence[Budget]) -> Transcription:

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from des_cli.model.arrays import Floats, Indices
+from des_cli.model.arrays import Flags, Floats, Indices
 from des_cli.model.machine import Machine
 from des_cli.model.motion import Motion
 from des_cli.reduction.rates import Rates
@@ -31,6 +31,7 @@ class AngleRows(Rows):
     beyond both ends, by at most ``acceleration h^2 / 8``, upwards where the rate falls
     and downwards where it rises: on that side the bound of the two samples is drawn in,
     though never inside the desired angle, which keeps the limit with its parabola.
+    An angle that no factor changes has no row: it may stand at its limit.
 
     Parameters
     ----------
@@ -39,9 +40,11 @@ class AngleRows(Rows):
         Inside the limits.
     unknowns : int
         3 + m.
+    fixed : (n, 3) array of bool
+        Angles that no factor changes.
     """
 
-    def __init__(self, machine: Machine, desired: Motion, unknowns: int) -> None:
+    def __init__(self, machine: Machine, desired: Motion, unknowns: int, fixed: Flags) -> None:
         super().__init__(np.arange(len(desired.t)))
         angle = np.array([limit.angle for limit in machine.limits])
         bounded = np.flatnonzero(np.isfinite(angle))
@@ -53,10 +56,13 @@ class AngleRows(Rows):
         for sign in (1.0, -1.0):
             start, end = sign * desired.rate_start[:, bounded], sign * desired.rate_end[:, bounded]
             beyond = np.where((start > 0.0) & (end < 0.0), bulge, 0.0)
-            sides.append(np.maximum(limit - _next_to(beyond), np.minimum(sign * at, limit)))
+            sides.append(
+                np.maximum(limit - _next_to(beyond), np.minimum(sign * at, angle[bounded]))
+            )
         most, least = sides[0], -sides[1]
         self._middle, half = 0.5 * (most + least), 0.5 * (most - least)
         self._bounded, self._per_half = bounded, 1.0 / half
+        self._per_half[fixed[:, bounded]] = 0.0
         self._jacobian = np.zeros((len(self.node), len(bounded), unknowns))
         self._jacobian[:, np.arange(len(bounded)), bounded] = self._per_half
 
@@ -115,10 +121,14 @@ class RateSums(Rows):
         return self.rates.curvature(x, total)
 
 
-def _rate_rows(machine: Machine, rates: Rates, step: Floats) -> RateSums:
-    """Return the rows of rates at samples."""
-    limit = np.array([limit.rate for limit in machine.limits]) * (1.0 - MARGIN)
-    return RateSums(rates, [np.tile(1.0 / limit, (len(step) + 1, 1))], np.arange(3))
+def _rate_rows(machine: Machine, rates: Rates, desired: Motion, kept: bool) -> RateSums:
+    """Return the rows of rates at samples; a first rate that is kept needs none."""
+    limit = np.array([limit.rate for limit in machine.limits])
+    most = np.clip(np.abs(desired.rate), limit * (1.0 - MARGIN), limit)
+    weight = 1.0 / most
+    if kept:
+        weight[0] = 0.0
+    return RateSums(rates, [weight], np.arange(3))
 
 
 def _acceleration_rows(machine: Machine, rates: Rates, step: Floats) -> RateSums:
@@ -137,7 +147,9 @@ def _jerk_rows(machine: Machine, rates: Rates, step: Floats) -> RateSums:
     return RateSums(rates, [first, -first - last, last], joints)
 
 
-def limit_rows(machine: Machine, rates: Rates, desired: Motion, unknowns: int) -> tuple[Rows, ...]:
+def limit_rows(
+    machine: Machine, rates: Rates, desired: Motion, pinned: Flags, fixed: Flags
+) -> tuple[Rows, ...]:
     """Return the machine's limits on rates, accelerations, angles and jerks.
 
     Parameters
@@ -147,14 +159,16 @@ def limit_rows(machine: Machine, rates: Rates, desired: Motion, unknowns: int) -
         Of a motion without rate steps: one point at each sample.
     desired : Motion
         Inside the limits.
-    unknowns : int
-        3 + m.
+    pinned : (n, 3 + m) array of bool
+        Angles and factors that are not looked for.
+    fixed : (n, 3) array of bool
+        Angles that no factor changes.
     """
     step = desired.step
     rows = (
-        _rate_rows(machine, rates, step),
+        _rate_rows(machine, rates, desired, bool(np.all(pinned[0]))),
         _acceleration_rows(machine, rates, step),
-        AngleRows(machine, desired, unknowns),
+        AngleRows(machine, desired, pinned.shape[1], fixed),
     )
     smooth = any(np.isfinite(limit.jerk) for limit in machine.limits) and len(step) > 1
     return (*rows, _jerk_rows(machine, rates, step)) if smooth else rows

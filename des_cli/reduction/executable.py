@@ -47,6 +47,9 @@ from inside them."""
 CLEAR_ANGLE = 1e-6
 """The same from angle limits."""
 
+NO_ROOM = 2e-3
+"""Relative distance from a limit within which a start that admits no motion is to blame."""
+
 CORNER = 0.5
 """Share of the acceleration and jerk limits at which a corner is rounded for factors on the
 rates, unless the desired motion asks for more elsewhere. A corner that is rounded at the
@@ -287,5 +290,11 @@ def _start_trouble(desired: Motion, limits: Sequence[JointLimits]) -> str:
                 return (
                     f"the {joint} {what} {value:.4g} {unit} at the start, outside its limit of "
                     f"{bound:.4g} {unit}, at t = {desired.t[0]:g} s; start it inside"
+                )
+            if value > bound * (1.0 - NO_ROOM):
+                return (
+                    f"the {joint} {what} {value:.7g} {unit} at the start, at its limit of "
+                    f"{bound:.7g} {unit}, which leaves a motion no room; start it farther inside, "
+                    f"or hold the {joint}"
                 )
     return ""

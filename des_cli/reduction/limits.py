@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
@@ -174,6 +175,30 @@ def find_violations(machine: Machine, motion: Motion, which: Which) -> tuple[Vio
                     )
                 )
     return tuple(found)
+
+
+def steps_too_short(machine: Machine, motion: Motion, share: float) -> str:
+    """Say where a jerk cannot be told from rounding, or nothing.
+
+    Parameters
+    ----------
+    machine : Machine
+    motion : Motion
+    share : float
+        Of a jerk limit, that rounding may make at the most.
+    """
+    rounding = _jerk_rounding(motion, "modified")
+    limit = np.array([limit.jerk for limit in machine.limits])
+    worst, joint = np.unravel_index(np.argmax(rounding / limit), rounding.shape)
+    part = float(rounding[worst, joint] / limit[joint])
+    if part <= share:
+        return ""
+    step = float(np.min(motion.step[worst - 1 : worst + 1]))
+    return (
+        f"a step of {step:.3g} s, at t = {motion.t[worst]:g} s, is too short to hold the "
+        f"{JOINTS[joint]}'s jerk in: rounding alone makes {part:.2g} of its limit there; sample "
+        f"with steps of {step * math.sqrt(part / share):.2g} s or more"
+    )
 
 
 def find_occupant_violations(

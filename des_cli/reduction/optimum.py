@@ -19,7 +19,7 @@ import numpy as np
 from des_cli.model.arrays import Floats
 from des_cli.model.solution import Solution
 from des_cli.reduction.coarse import grids, refine
-from des_cli.reduction.problem import Problem
+from des_cli.reduction.problem import FAINT, Problem
 from des_cli.reduction.search import COARSE, TOLERANCE, Search
 from des_cli.reduction.study_law import sweep
 from des_cli.reduction.transcription import Transcription
@@ -48,6 +48,8 @@ def find_optimum(problem: Problem, search: Search) -> Solution:
     Solution
         ``converged``, ``acceptable``, ``iteration-limit`` or ``diverged``.
     """
+    if mean_square(problem) <= FAINT:
+        return passed_through(problem)
     coarsest, *finer = grids(problem)
     grid = Transcription(coarsest)
     best, starts = _find_best(grid, search)
@@ -60,6 +62,29 @@ def find_optimum(problem: Problem, search: Search) -> Solution:
             again, starts = _find_best(grid, search)
             best = best_of([best, again]) if len(best.x) == grid.n else again
     return make_solution(grid, best, search, starts)
+
+
+def mean_square(problem: Problem) -> float:
+    """Return the mean of c' R1 c along the desired motion."""
+    grid = Transcription(replace(problem, r2=np.zeros(problem.controls), tracking=np.zeros(3)))
+    return 2.0 * grid.cost(grid.desired) / float(grid.weight.sum())
+
+
+def passed_through(problem: Problem) -> Solution:
+    """Return the desired motion, of which nothing is to be reduced."""
+    grid = Transcription(problem)
+    cost = grid.cost(grid.desired)
+    return Solution(
+        status="converged",
+        message="the desired motion makes no cross-coupling: it is passed through",
+        control=np.ones((grid.n, grid.m)),
+        modified=grid.motion(grid.desired),
+        adjoint=np.zeros((grid.n, 3)),
+        cost=cost,
+        cost_unreduced=cost,
+        optimality=0.0,
+        iterations=0,
+    )
 
 
 def _find_best(grid: Transcription, search: Search) -> tuple[Outcome, int]:

@@ -22,6 +22,11 @@ from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Axes, Control, Ends, JacobianAt, Profile
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
+FAINT = 1e-9
+"""Mean square of the weighted cross-coupling [rad^2/s^4] below which there is none: at the
+default weights 2e-5 rad/s^2, a hundredth of what a person can feel at the very least. The way
+to reduce it would be told by the rounding of the rest."""
+
 
 @dataclass(frozen=True)
 class Problem:

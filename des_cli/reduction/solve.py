@@ -18,11 +18,17 @@ from des_cli.reduction.change import Change
 from des_cli.reduction.executable import nearest_executable
 from des_cli.reduction.free.method import find_free_motion
 from des_cli.reduction.free.task import FreeTask
+from des_cli.reduction.limits import steps_too_short
 from des_cli.reduction.optimum import find_optimum
 from des_cli.reduction.problem import Problem, pose_problem
 from des_cli.reduction.search import Report, Search
 from des_cli.reduction.study_law import sweep
 from des_cli.reduction.zero import find_zero, pose_zero
+
+MOST_ROUNDING = 3e-8
+"""Share of a jerk limit that rounding may make where factors are looked for inside it. A jerk
+is a second difference of them over the square of the step: with more than that the search
+ends at a place that rounding picks."""
 
 
 @dataclass(frozen=True)
@@ -143,6 +149,8 @@ def executable_motion(profile: Profile, target: Motion) -> tuple[Motion, str]:
     """Return the motion that factors act on, and why there is none that keeps the limits."""
     if profile.reduction.limits != "enforce":
         return target, ""
+    if trouble := steps_too_short(profile.machine, target, MOST_ROUNDING):
+        return target, f"{trouble}, or let the joints move freely"
     return nearest_executable(profile.machine, target)
 
 

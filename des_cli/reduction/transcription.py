@@ -73,7 +73,7 @@ class Transcription:
         self.pinned = self._pins()
         self.rows: list[Rows] = []
         if problem.machine is not None:
-            self.rows += limit_rows(problem.machine, self.rates, motion, 3 + self.m)
+            self.rows += limit_rows(problem.machine, self.rates, motion, self.pinned, self._fixed())
         self.offset = np.zeros((len(self.points.node), 3))
         """Added to the Coriolis vector at the points where the cost weighs it."""
         self.budgets: list[Measure] = []
@@ -97,6 +97,18 @@ class Transcription:
         if self.problem.ends == "match-both":
             pinned[-1] = True
         return pinned
+
+    def _fixed(self) -> Flags:
+        """Return the angles that no factor changes, (n, 3): a factor on no rate has no effect."""
+        desired = self.problem.desired
+        fixed = np.zeros((self.n, 3), dtype=bool)
+        fixed[0] = True
+        if self.problem.jacobian == "desired":
+            moved = np.any(desired.rate_sides != 0.0, axis=1)
+            moved |= np.diff(desired.angle, axis=0) != 0.0
+            fixed[1:] = ~np.logical_or.accumulate(moved, axis=0)
+            fixed |= self.problem.held & (self.m == 3)
+        return fixed
 
     # ------------------------------------------------------------------ dynamics
     def motion(self, x: Floats) -> Motion:

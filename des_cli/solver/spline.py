@@ -128,6 +128,15 @@ class SplineGrid:
         """
         at = (np.asarray(t) - self.start) / self.step
         interval = np.clip(at.astype(np.intp), 0, self.intervals - 1)
+        if order == 1:
+            # From differences, which are small: where steps are microseconds, a jerk would
+            # else be made of the rounding of the values themselves.
+            u = (at - interval)[:, None]
+            slope = self.differences(control, 1)
+            before, here, after = (slope[interval + a] for a in range(ORDER - 1))
+            return np.asarray(
+                here + 0.5 * ((1.0 - u) ** 2 * (before - here) + u**2 * (after - here))
+            )
         weight = self.basis(at - interval, order)
         return sum(
             (weight[:, a : a + 1] * control[interval + a] for a in range(ORDER)),

@@ -21,6 +21,10 @@ ROUGH = 1e-3
 """Share of the seat rate's square that its samples have beside the mean of their neighbours,
 from which it is rough. Of a wave of eight samples it is 0.086, of one of thirty 4.8e-4."""
 
+STILL = 1e-9
+"""Mean square of the weighted cross-coupling [rad^2/s^4] that costs are relative to at the
+least, and below which there is nothing to reduce: rounding is no error of it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Claim:

@@ -8,7 +8,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS
 from des_cli.model.run import Check
 from des_cli.reduction.problem import Problem
-from des_cli.verify.claim import Claim
+from des_cli.verify.claim import STILL, Claim
 from des_cli.verify.felt import Felt, SeatChain
 
 DYNAMICS_TOLERANCE = 1e-8
@@ -83,6 +83,12 @@ def check_cost(claim: Claim, problem: Problem) -> list[Check]:
         name = "rise of the cost over the desired motion's"
         checks.append(Check("cost.rise", name, rise, COST_TOLERANCE))
     return checks
+
+
+def is_still(claim: Claim, problem: Problem) -> bool:
+    """Return whether the desired motion makes no cross-coupling that there is to reduce."""
+    c = cross_of(problem, claim.executable)
+    return bool(claim.weight @ np.sum((problem.r1 @ c) * c, axis=0) <= STILL * claim.duration)
 
 
 def check_zero(claim: Claim, problem: Problem) -> Check:

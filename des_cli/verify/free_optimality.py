@@ -19,7 +19,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.profile import Reduction
 from des_cli.model.run import Check
 from des_cli.verify.budgets import integrand, keeps_budgets, spent_budgets
-from des_cli.verify.claim import Claim
+from des_cli.verify.claim import STILL, Claim
 from des_cli.verify.directions import coarseness, find_directions
 from des_cli.verify.felt import Felt
 from des_cli.verify.multipliers import least_residual
@@ -28,10 +28,6 @@ from des_cli.verify.slopes import Running, slopes_along, slopes_by_seat
 
 COST_TOLERANCE = 1e-9
 """Relative difference of the recomputed cost."""
-
-STILL = 1e-9
-"""Mean square of the weighted cross-coupling [rad^2/s^4] that costs are relative to at the
-least: a maneuver without any costs nothing, and rounding is no error of it."""
 
 OPTIMALITY_TOLERANCE, MOST_TOLERANCE = 2e-2, 0.3
 """Slope that may be left, relative to the desired motion's or the solution's own: of all

@@ -96,7 +96,7 @@ def _of_factors(claim: Claim, problem: Problem) -> list[Check]:
         checks.append(factors.check_zero(claim, problem))
     elif reduction.algorithm == "optimum":
         checks += check_budgets(claim)
-        if problem.jacobian == "desired":
+        if problem.jacobian == "desired" and not factors.is_still(claim, problem):
             checks.append(check_optimality(claim.reduced, problem))
     return checks
 

@@ -42,7 +42,12 @@ from des_cli.reduction.free.pose import cross_coupling, pose_motion
 from des_cli.reduction.free.program import MotionProgram
 from des_cli.reduction.free.task import SEAT_ANGLES, FreeTask, turned_seat
 from des_cli.reduction.free.ties import tie_reversals
-from des_cli.reduction.limits import find_occupant_violations, find_violations
+from des_cli.reduction.limits import (
+    find_occupant_violations,
+    find_violations,
+    steps_too_short,
+)
+from des_cli.reduction.problem import FAINT
 from des_cli.solver.barrier import Options, Outcome, minimise
 from des_cli.solver.spline import SplineGrid
 
@@ -50,8 +55,8 @@ WELL_POSED: MetricKey = SEAT_RATE_DEVIATION
 """The metric that sees fast motions of every joint, so that a budget on it leaves one
 optimum."""
 
-NOTHING = 1e-18
-"""Mean square of the weighted cross-coupling [rad^2/s^4] below which there is none."""
+MOST_ROUNDING = 1.0
+"""Share of a jerk limit that rounding may make: beyond it no row can keep the limit."""
 
 LONG, COARSE = 4000, 1000
 """Intervals from which a well-posed problem is solved on a coarser grid first, and the most
@@ -142,6 +147,10 @@ class _Search:
         if missing := sorted(fixed - set(seat_turns(self.task.machine, self.task.seat))):
             why = f"the machine has no {' and no '.join(missing)} beyond its cab to be found"
             return self.answers.refused(self.task.reference, why)
+        if self.task.reduction.limits == "enforce" and (
+            trouble := steps_too_short(self.task.machine, self.task.reference, MOST_ROUNDING)
+        ):
+            return self.answers.refused(self.task.reference, trouble)
         *coarse, finest = (self._fit(grid) for grid in self._grids())
         desired = self._desired(finest)
         if finest.trouble:
@@ -155,7 +164,7 @@ class _Search:
             self.answers = Answers(self.task, self.log)
         fits = [*(fit for fit in coarse if not fit.trouble), finest]
         energy = cross_coupling(self.task, finest.grid)
-        if energy <= NOTHING * finest.grid.duration:
+        if energy <= FAINT * finest.grid.duration:
             return self.answers.passed_through(desired)
         budgets = tuple(replace(b, most=b.most * (1.0 - ROOM)) for b in self.task.reduction.budget)
         outcome: Outcome | None = None
@@ -214,7 +223,7 @@ class _Search:
 
     def _fit(self, grid: SplineGrid) -> ExecutableSpline:
         task = self.task
-        fit, limits = fit_for_table(grid, self.t, task.reference, task.limits, task.base_ends)
+        fit, limits = fit_for_table(grid, self.t, task.reference, task.base_limits, task.base_ends)
         self.task = replace(task, limits=limits)
         return fit
 

@@ -19,6 +19,7 @@ from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.response import Response
 from des_cli.reduction.free.requested import is_rough
+from des_cli.reduction.limits import find_violations
 from des_cli.solver.spline import Ends, SplineGrid
 
 SEAT_ANGLES = ("seat_yaw", "seat_pitch")
@@ -148,6 +149,20 @@ class FreeTask:
             end_value=both,
             end_rate=both | (name == "match-rates"),
             held=held,
+        )
+
+    @property
+    def base_limits(self) -> tuple[JointLimits, ...]:
+        """The limits of the executable motion: none for a joint that is held and keeps its own.
+
+        Such a joint plays its rows as they are, at a limit too, where no spline has room.
+        """
+        beyond = {v.joint for v in find_violations(self.machine, self.reference, "desired")}
+        kept = [self.ends.held[j] and joint not in beyond for j, joint in enumerate(JOINTS)]
+        none = unlimited()
+        return tuple(
+            none[j] if keeps else limit
+            for j, (keeps, limit) in enumerate(zip(kept, self.limits, strict=True))
         )
 
     @property
