@@ -65,6 +65,12 @@ def coverage(session: nox.Session) -> None:
     _pytest(session, "--cov", "--cov-branch", "--cov-report=term:skip-covered")
 
 
+@nox.session
+def mutation(session: nox.Session) -> None:
+    """Whether the tests of verify see faults in it; arguments go to scripts/mutate.py."""
+    session.run(sys.executable, "scripts/mutate.py", *session.posargs, env=ONE_THREAD)
+
+
 def _pytest(session: nox.Session, *options: str) -> None:
     """Run tests on all cores, a file on one of them; arguments after ``--`` go to pytest."""
     # A file's fixtures and cached solutions are computed once, by the one worker that has it.
