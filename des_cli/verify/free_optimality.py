@@ -95,7 +95,8 @@ def check_optimality(claim: Claim) -> list[Check]:
     size = max(*np.linalg.norm([scales[:, 0], slopes[:, 0]], axis=1), STILL * claim.duration)
     value = float(np.linalg.norm(residual)) / size
     name = "slope of the objective at the optimum, relative to its own or the desired motion's"
-    return [Check("optimality", name, value, _tolerance(claim))]
+    cure = "its steps are coarse: sample the profile finer" if coarseness(claim) > 1.0 else ""
+    return [Check("optimality", name, value, _tolerance(claim), cure)]
 
 
 def _tolerance(claim: Claim) -> float:

@@ -89,6 +89,12 @@ def test_the_optimum_of_other_budgets(case):
     assert case.failed(half.solution) == {"optimality"}
 
 
+def test_the_optimum_of_a_tenth_of_the_budget(case):
+    tenth = Case(most=(0.005, 0.1))
+    assert tenth.failed() == set()
+    assert case.failed(tenth.solution) == {"optimality"}
+
+
 def test_the_optimum_between_other_ends(case):
     both = Case(ends="match-both")
     assert case.failed(both.solution) == {"optimality"}
@@ -121,6 +127,14 @@ def test_budgets_on_a_table_whose_positions_jump():
     assert -0.4 < case.value(f"budget.{G}") < -0.2
     assert case.failed() == set()
     assert case.value("optimality") < 0.01
+
+
+@pytest.mark.parametrize(("intervals", "coarse"), [(2000, False), (100, True)])
+def test_coarse_steps_are_named_where_a_motion_is_no_optimum(intervals, coarse):
+    case = Case(requested=make_cobra(intervals))
+    (check,) = [c for c in case.checks(case.played(case.desired)) if c.key == "optimality"]
+    assert not check.ok
+    assert ("sample the profile finer" in str(check)) is coarse
 
 
 def test_a_maneuver_without_cross_coupling_passes():

@@ -24,3 +24,10 @@ def test_a_negative_multiplier_is_none():
     slope = np.array([1.0, 2.0])
     np.testing.assert_array_equal(least_residual(slope, slope[:, None]), slope)
     np.testing.assert_allclose(least_residual(slope, -3.0 * slope[:, None]), 0.0, atol=1e-15)
+
+
+def test_slopes_of_other_sizes_count_as_much():
+    draw = np.random.default_rng(9)
+    by_budget = draw.normal(size=(12, 2))
+    slope = -by_budget @ [1.0, 2.0]
+    np.testing.assert_allclose(least_residual(slope, by_budget * [1.0, 1e-18]), 0.0, atol=1e-12)

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion, Shortfall
-from des_cli.model.profile import BodyRates, Profile
+from des_cli.model.profile import BodyRates, GCommand, Profile
 from des_cli.verify.felt import SeatChain
 from des_cli.verify.requested import as_requested
 
@@ -32,6 +32,16 @@ def test_recorded_rates_are_the_profiles_own():
     assert isinstance(command, BodyRates)
     np.testing.assert_array_equal(requested.rate[:, :10].T, command.start)
     np.testing.assert_array_equal(requested.rate[:, 10:].T, command.end)
+
+
+def test_a_requested_g_is_the_profiles_own():
+    felt, _, shortfall = case()
+    command = GCommand(*RNG.normal(size=(2, 10, 3)))
+    requested = as_requested(felt, command, shortfall)
+    np.testing.assert_array_equal(requested.g[:, :10].T, command.start)
+    np.testing.assert_array_equal(requested.g[:, 10:].T, command.end)
+    missing = requested.rate - felt.rate
+    np.testing.assert_allclose(missing[:, :10].T, shortfall.seat_rate[:, 0], atol=1e-12)
 
 
 def test_the_rest_is_what_is_made_and_what_is_missing():
