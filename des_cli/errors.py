@@ -89,6 +89,12 @@ class ProfileError(DesError):
     exit_code = ExitCode.PROFILE
 
 
+class BrokenRunError(DesError):
+    """A run or a command table, given to be checked, was changed, was cut or is none."""
+
+    exit_code = ExitCode.PROFILE
+
+
 class NoSolutionError(DesError):
     """The solver ended without a solution that may be used."""
 

@@ -221,12 +221,12 @@ def test_a_bought_component_is_noticed():
         if run.metrics["coriolis"][key]["reduction"] < -0.05
     ]
     assert grown
-    (notice,) = [notice for notice in run.notices if "bought" in notice]
-    assert all(f"{label} grew by" in notice for label in grown)
+    (notice,) = [notice for notice in run.notices if "bought" in notice.text]
+    assert all(f"{label} grew by" in notice.text for label in grown)
 
 
 def test_nothing_bought_nothing_noticed(run):
-    assert not any("bought" in notice for notice in run.notices)
+    assert not any("bought" in notice.text for notice in run.notices)
 
 
 def test_a_damped_inverse_is_noticed_with_its_time_span():
@@ -236,10 +236,10 @@ def test_a_damped_inverse_is_noticed_with_its_time_span():
         "loop", t, rates, DES, initial_angle=np.array([0.0, 1.35, 0.0]), reduction=STUDY
     )
     run = reduce_profile(profile)
-    (notice,) = [notice for notice in run.notices if "damped" in notice]
+    (notice,) = [notice for notice in run.notices if "damped" in notice.text]
     times = run.asked.motion.t[run.asked.damped]
-    assert f"{times[0]:g}" in notice
-    assert f"{times[-1]:g} s" in notice
+    assert f"{times[0]:g}" in notice.text
+    assert f"{times[-1]:g} s" in notice.text
 
 
 def test_the_same_profile_gives_the_same_metrics():

@@ -43,6 +43,7 @@ def imported(watched: set[str], *args: str, cwd: Path, env: dict[str, str]) -> s
         ["report", "--help"],
         ["sweep", "--help"],
         ["validate", "--help"],
+        ["verify", "--help"],
         ["profiles", "--help"],
         ["kinematics", "--help"],
         ["machines", "--help"],

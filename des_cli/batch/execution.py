@@ -12,6 +12,7 @@ from des_cli.batch.job import Job, JobResult, Output
 from des_cli.batch.source import STANDARD_STREAM, load_source
 from des_cli.errors import Complaint, DesError, ExitCode, Failure, FileAccessError
 from des_cli.model.coriolis import COMPONENTS
+from des_cli.model.notice import Notice
 from des_cli.model.stage import OnStage, untold
 
 # What needs numpy is imported when a job runs, as in `source`.
@@ -105,7 +106,7 @@ def _reduce_and_write(
     try:
         run.require_release()
         on_stage("plots and tables" if output.plots and output.table_format is None else "tables")
-        table = _write(output, run, target)
+        table = _write(job, run, target)
     except DesError as error:
         # What the solver found explains the refusal: it is told all the same.
         lines = tuple(str(complaint) for complaint in error.complaints)
@@ -113,14 +114,15 @@ def _reduce_and_write(
     return JobResult(source, profile.name, written=str(target), table=table, **told)
 
 
-def _write(output: Output, run: Run, target: Path) -> bytes | None:
+def _write(job: Job, run: Run, target: Path) -> bytes | None:
     """Write a run folder or a table; return the table that belongs on stdout.
 
     No table gets its name, or goes to stdout, whose bytes are not what the run is to be.
     """
     from des_cli.release.gate import require_table
 
-    accept = partial(require_table, run)
+    output = job.output
+    accept = partial(require_table, run, fail_on=job.fail_on)
     if output.table_format is None:
         from des_cli.runs_out.run_folder import write_run
 
@@ -156,7 +158,7 @@ def _refuse_existing(output: Output, target: Path) -> None:
     raise FileAccessError([Complaint(str(target), what)])
 
 
-def _withdraw(output: Output, name: str) -> tuple[str, ...]:
+def _withdraw(output: Output, name: str) -> tuple[Notice, ...]:
     """Remove the earlier output that a failed job was to replace.
 
     Otherwise a console would find, under the name that it asked for, commands
@@ -174,7 +176,8 @@ def _withdraw(output: Output, name: str) -> tuple[str, ...]:
         discard_run(target)
     else:
         return ()
-    return (f"withdrew the earlier {target}: it is not what this profile asks for",)
+    said = f"withdrew the earlier {target}: it is not what this profile asks for"
+    return (Notice("withdrawn", said),)
 
 
 def _holds_run_of(folder: Path, profile: Profile) -> bool:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from des_cli.batch.source import Source, split_source
 from des_cli.errors import ExitCode, Failure
+from des_cli.model.notice import Notice
 
 if TYPE_CHECKING:
     from des_cli.model.solution import Iteration
@@ -52,10 +53,19 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What to do with one profile: read it, reduce it, write it."""
+    """What to do with one profile: read it, reduce it, write it.
+
+    Parameters
+    ----------
+    source : Source
+    output : Output
+    fail_on : frozenset of str
+        Names of notices with which it is not to be written.
+    """
 
     source: Source
     output: Output = Output()
+    fail_on: frozenset[str] = frozenset()
 
     @property
     def label(self) -> str:
@@ -70,7 +80,7 @@ def split_jobs(jobs: Iterable[Job]) -> list[Job]:
         parts = split_source(job.source)
         several = len(parts) > 1
         output = replace(job.output, out_is_parent=True) if several else job.output
-        found += [Job(part, output) for part in parts]
+        found += [replace(job, source=part, output=output) for part in parts]
     return found
 
 
@@ -86,8 +96,10 @@ class JobResult:
     exit_code : ExitCode
     complaints : tuple of str
         Lines that say why it failed.
-    notices, violations : tuple of str
-        Sentences for the user's attention, and every broken limit.
+    notices : tuple of Notice
+        Sentences for the user's attention.
+    violations : tuple of str
+        Every broken limit.
     metrics : dict, optional
         The content of ``metrics.json``.
     objective : tuple of str
@@ -108,7 +120,7 @@ class JobResult:
     name: str
     exit_code: ExitCode = ExitCode.DONE
     complaints: tuple[str, ...] = ()
-    notices: tuple[str, ...] = ()
+    notices: tuple[Notice, ...] = ()
     violations: tuple[str, ...] = ()
     metrics: Mapping[str, Any] | None = None
     objective: tuple[str, ...] = ()

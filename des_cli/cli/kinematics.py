@@ -31,7 +31,7 @@ Examples:
 """,
 )
 @click.argument("profile", metavar="[PROFILE]", required=False)
-@state_options
+@state_options()
 @machine_option
 @setting_options
 @click.option(

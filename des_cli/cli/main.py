@@ -21,7 +21,17 @@ from des_cli.cli.console import Console
 from des_cli.cli.options import color_option, verbosity_options
 from des_cli.errors import ExitCode, Failure
 
-COMMANDS = ("reduce", "report", "sweep", "validate", "kinematics", "profiles", "machines", "schema")
+COMMANDS = (
+    "reduce",
+    "report",
+    "sweep",
+    "validate",
+    "verify",
+    "kinematics",
+    "profiles",
+    "machines",
+    "schema",
+)
 """In the order of ``--help``; each is the module and the command of that name."""
 
 PROGRAM = "des-coriolis"

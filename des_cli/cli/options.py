@@ -14,12 +14,16 @@ import click
 
 from des_cli.cli.console import Console
 from des_cli.model.metric import STUDY_METRIC, metric_named
+from des_cli.model.notice import HARMS
 from des_cli.profiles_in.setting import Setting, value_of_option
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 TABLE_FORMATS = ("csv", "ndjson", "json", "parquet")
 """Formats of the command table; a file's suffix is one of them."""
+
+ANY_HARM = "notice"
+"""Stands for every notice that warns of harm."""
 
 DEFAULT_RUNS = "runs"
 """Where runs go, and where ``report`` looks for them."""
@@ -70,6 +74,25 @@ def text_or_json_option(text: str) -> Callable[[F], F]:
         show_default=True,
         help=text,
     )
+
+
+def fail_on_option(command: F) -> F:
+    """Add ``--fail-on``, which comes to the command as a set of notices' names."""
+    return click.option(
+        "--fail-on",
+        metavar="NAME",
+        multiple=True,
+        type=click.Choice([ANY_HARM, *HARMS]),
+        callback=_named_notices,
+        help=f"Refuse with 5 what has this notice: {', '.join(HARMS)}, or any of them: {ANY_HARM}; "
+        "repeatable.",
+    )(command)
+
+
+def _named_notices(
+    context: click.Context, parameter: click.Parameter, names: tuple[str, ...]
+) -> frozenset[str]:
+    return frozenset(HARMS) if ANY_HARM in names else frozenset(names)
 
 
 # The options that are keys of `reduction:` by name. What a value may be is the

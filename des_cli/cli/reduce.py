@@ -14,6 +14,7 @@ from des_cli.cli.options import (
     DEFAULT_RUNS,
     TABLE_FORMATS,
     existing_folder,
+    fail_on_option,
     reduction_options,
     reduction_settings,
     verbosity_options,
@@ -66,6 +67,7 @@ Examples:
     show_default=True,
     help="Profiles at a time; 0 is one for each CPU.",
 )
+@fail_on_option
 @click.option("--keep-going", is_flag=True, help="Go on with the others after one has failed.")
 @click.option("--resume", is_flag=True, help="Keep finished runs of the very same profile.")
 @click.option("--overwrite", is_flag=True, help="Replace an output that exists.")
@@ -84,6 +86,7 @@ def reduce(
     out: str | None,
     table_format: str | None,
     jobs: int,
+    fail_on: frozenset[str],
     keep_going: bool,
     resume: bool,
     overwrite: bool,
@@ -125,6 +128,7 @@ def reduce(
                 decimal=decimal,
             ),
             output,
+            fail_on,
         )
         for name in profiles
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import click
@@ -24,21 +24,26 @@ LARGEST = 1e6
 """Largest magnitude of an option in SI units; no machine comes near."""
 
 
-def state_options(command: F) -> F:
-    """Add an option for each quantity and each unit that measures it."""
-    for stem, kind in reversed(QUANTITIES):
-        for suffix in reversed(suffixes(kind)):
-            name = f"{stem}_{suffix}"
-            words = stem.replace("_", " ") if kind == "angle" and "_" in stem else f"{stem} {kind}"
-            command = click.option(
-                f"--{name.replace('_', '-')}",
-                name,
-                type=float,
-                metavar="NUMBER",
-                callback=_require_plain_number,
-                help=f"{words[0].upper()}{words[1:]} [{_written(suffix)}].",
-            )(command)
-    return command
+def state_options(quantities: Sequence[tuple[str, str]] = QUANTITIES) -> Callable[[F], F]:
+    """Return what adds an option for each quantity and each unit that measures it."""
+
+    def add(command: F) -> F:
+        for stem, kind in reversed(quantities):
+            for suffix in reversed(suffixes(kind)):
+                name = f"{stem}_{suffix}"
+                plain = kind == "angle" and "_" in stem
+                words = stem.replace("_", " ") if plain else f"{stem} {kind}"
+                command = click.option(
+                    option_name(name),
+                    name,
+                    type=float,
+                    metavar="NUMBER",
+                    callback=_require_plain_number,
+                    help=f"{words[0].upper()}{words[1:]} [{_written(suffix)}].",
+                )(command)
+        return command
+
+    return add
 
 
 def in_si(given: Mapping[str, float]) -> dict[tuple[str, str], float]:

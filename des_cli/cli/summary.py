@@ -33,7 +33,8 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
     if result.exit_code:
         failure = Failure(result.exit_code, result.complaints, result.traceback)
         console.failure(failure)
-        console.warn(result.notices)
+        refused = "\n".join(result.complaints)
+        console.warn(each.text for each in result.notices if each.text not in refused)
         return
     if result.state != "reduced" or result.metrics is None:
         console.say(_idle_line(console, result))
@@ -53,7 +54,11 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
         kept = "kept by the modified motion" if result.violations else "all kept"
         console.say(f"{label}{kept}{limits_used(metrics)}")
     for notice in result.notices:
-        console.say(console.style(f"  {'notice':<{_LABEL_WIDTH}} {notice}", "warning"))
+        line = f"  {'notice':<{_LABEL_WIDTH}} {notice.text}"
+        if notice.harmful:
+            console.warn([line])
+        else:
+            console.say(console.style(line, "warning"))
     if alone and result.table is None:
         console.say(f"  {'written':<{_LABEL_WIDTH}} {console.style(result.written, 'good')}")
 

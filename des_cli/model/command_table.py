@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from des_cli.model.arrays import Floats, freeze
+from des_cli.model.motion import Motion
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,11 @@ class CommandTable:
         freeze(self, "t", (None,))
         freeze(self, "arm_rate", (len(self.t),))
         freeze(self, "position", (len(self.t), 2))
+
+    @classmethod
+    def of_motion(cls, motion: Motion) -> CommandTable:
+        """Return the rows that play a motion."""
+        return cls(motion.t, motion.rate[:, 0], motion.angle[:, 1:])
 
     @cached_property
     def step(self) -> Floats:

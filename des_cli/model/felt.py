@@ -12,6 +12,21 @@ GAxis: TypeAlias = Literal["gx", "gy", "gz"]
 
 G_AXES: tuple[GAxis, ...] = get_args(GAxis)
 
+SHARE = 0.05
+"""Relative growth of the total angular acceleration's rms, or of the G onset, that is told:
+a twentieth is what two runs of one maneuver may differ by on a machine."""
+
+PEAK_SHARE = 0.1
+"""The same of the total angular acceleration's peak: one instant says less than a mean."""
+
+LEAST_START_RATE = 0.02
+"""Difference of a joint's rate at the start [rad/s] that is told: about a degree per second,
+under the 1.5 to 2 degrees per second at which a turn is noticed (Benson 1989)."""
+
+LEAST_START_ANGLE = 0.01
+"""Difference of a joint's angle at the start [rad] that is told, of a joint whose start
+is not among the constants to be found: half a degree, more than rounding by far."""
+
 
 class BeforeAfter(NamedTuple):
     """A number of the motion that the profile asks for, and of the modified one."""

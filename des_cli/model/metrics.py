@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
 from des_cli.model.coriolis import ComponentKey
@@ -15,6 +16,7 @@ from des_cli.model.felt import BeforeAfter, Felt, TurningSizes
 from des_cli.model.loads import Loads
 from des_cli.model.machine import JOINTS, Joint
 from des_cli.model.metric import JOINT_DEVIATION, MetricKey
+from des_cli.model.notice import Notice
 from des_cli.model.sections import INLINED, LEFT_OUT, as_mapping, keyed
 
 When: TypeAlias = Literal["start", "end"]
@@ -248,11 +250,18 @@ class Metrics:
     singularity: Singularity = field(default_factory=Singularity)
     violations: tuple[str, ...] = ()
     notices: tuple[str, ...] = ()
+    notice_names: tuple[str, ...] = ()
 
     @property
     def ride(self) -> Felt:
         """What is felt, beside the ride that was reduced: the noise of a record is no ride."""
         return self.added.felt if self.added else self.felt
+
+    @property
+    def named_notices(self) -> tuple[Notice, ...]:
+        """The notices with their names, as far as these are known."""
+        pairs = zip_longest(self.notice_names[: len(self.notices)], self.notices, fillvalue="")
+        return tuple(Notice(name, text) for name, text in pairs)
 
     def mapping(self) -> dict[str, Any]:
         """Return the content of ``metrics.json``, a new one each time."""

@@ -12,6 +12,7 @@ from des_cli.errors import Complaint, NoSolutionError, NotReleasedError
 from des_cli.model.machine import Joint, Seat
 from des_cli.model.metrics import Metrics
 from des_cli.model.motion import DesiredMotion, Motion
+from des_cli.model.notice import Notice
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
 from des_cli.model.solution import Solution
@@ -166,9 +167,9 @@ class Run:
         return self.results.mapping()
 
     @property
-    def notices(self) -> tuple[str, ...]:
+    def notices(self) -> tuple[Notice, ...]:
         """The sentences for the user's attention."""
-        return self.results.notices
+        return self.results.named_notices
 
     def require_release(self) -> None:
         """Raise unless this run may become a command table.

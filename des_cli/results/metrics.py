@@ -88,7 +88,12 @@ def measure(run: Measured) -> Metrics:
         singularity=_singularity(run.asked),
         violations=tuple(str(violation) for violation in run.violations),
     )
-    return replace(metrics, notices=tuple(find_notices(run.profile, run.asked, metrics)))
+    notices = find_notices(run.profile, run.asked, metrics)
+    return replace(
+        metrics,
+        notices=tuple(notice.text for notice in notices),
+        notice_names=tuple(notice.name for notice in notices),
+    )
 
 
 def _profile(profile: Profile) -> ProfileFacts:

@@ -17,6 +17,7 @@ from des_cli.model.metric import (
 )
 from des_cli.model.metrics import Metrics
 from des_cli.model.motion import DesiredMotion
+from des_cli.model.notice import Notice, NoticeName
 from des_cli.model.profile import Profile
 from des_cli.results.asked_g import asked_g_sentence
 from des_cli.results.worse import find_worse
@@ -47,8 +48,8 @@ NOTICEABLE = 1e-3
 """Change of a desired angle [rad] by the limits that is worth a sentence."""
 
 
-def find_notices(profile: Profile, asked: DesiredMotion, metrics: Metrics) -> list[str]:
-    """Return the sentences of a run.
+def find_notices(profile: Profile, asked: DesiredMotion, metrics: Metrics) -> list[Notice]:
+    """Return the sentences of a run, each with its name.
 
     Parameters
     ----------
@@ -60,27 +61,29 @@ def find_notices(profile: Profile, asked: DesiredMotion, metrics: Metrics) -> li
 
     Returns
     -------
-    list of str
+    list of Notice
         On what reading changed, a noisy record, a ride that got worse or feels different,
         budgets that let the commands chatter, how near the machine comes to an asked G, a
         damped inverse, a replaced desired motion, a cross-coupling that grew or was bought
         with another or was not there, and a solver that stopped short of its tolerance.
     """
-    found = [
-        *profile.remarks,
-        *asked.remarks,
-        suggest_smoothing(profile, asked),
-        _worse(metrics),
-        _felt(metrics),
-        _ill_posed(metrics),
-        asked_g_sentence(asked.g_offset),
-        _damped(asked),
-        _replaced(metrics),
-        _nothing(metrics),
-        _bought(metrics),
-        _short(metrics),
+    remarks: list[tuple[NoticeName, str]] = [
+        ("record", remark) for remark in (*profile.remarks, *asked.remarks)
     ]
-    return [sentence for sentence in found if sentence]
+    found: list[tuple[NoticeName, str]] = [
+        *remarks,
+        ("noisy", suggest_smoothing(profile, asked)),
+        ("worse", _worse(metrics)),
+        ("felt", _felt(metrics)),
+        ("ill-posed", _ill_posed(metrics)),
+        ("asked-g", asked_g_sentence(asked.g_offset)),
+        ("damped", _damped(asked)),
+        ("replaced", _replaced(metrics)),
+        ("uncoupled", _nothing(metrics)),
+        ("bought", _bought(metrics)),
+        ("short", _short(metrics)),
+    ]
+    return [Notice(name, sentence) for name, sentence in found if sentence]
 
 
 def _usable(metrics: Metrics) -> bool:

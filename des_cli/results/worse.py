@@ -12,7 +12,16 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, TypeAlias
 
-from des_cli.model.felt import G_AXES, BeforeAfter, Felt, GAxis
+from des_cli.model.felt import (
+    G_AXES,
+    LEAST_START_ANGLE,
+    LEAST_START_RATE,
+    PEAK_SHARE,
+    SHARE,
+    BeforeAfter,
+    Felt,
+    GAxis,
+)
 from des_cli.model.machine import JOINTS
 from des_cli.model.metric import (
     ANGULAR_ACCELERATION_PEAK_RATIO,
@@ -22,26 +31,11 @@ from des_cli.model.metric import (
 )
 from des_cli.model.metrics import Metrics
 
-SHARE = 0.05
-"""Relative growth of the total angular acceleration's rms, or of the G onset, that is told:
-a twentieth is what two runs of one maneuver may differ by on a machine."""
-
-PEAK_SHARE = 0.1
-"""The same of the total angular acceleration's peak: one instant says less than a mean."""
-
 LEAST_GY = 0.1
 """Growth of the sideways G's peak [g] that is told: it leans a 1 g pilot by six degrees."""
 
 LEAST_ONSET = 0.1
 """Growth of the G onset on any axis [g/s] that is told: the whole onset of a gradual-onset run."""
-
-LEAST_START_RATE = 0.02
-"""Difference of a joint's rate at the start [rad/s] that is told: about a degree per second,
-under the 1.5 to 2 degrees per second at which a turn is noticed (Benson 1989)."""
-
-LEAST_START_ANGLE = 0.01
-"""Difference of a joint's angle at the start [rad] that is told, of a joint whose start
-is not among the constants to be found: half a degree, more than rounding by far."""
 
 _SMALLER = f"a smaller budget on {SEAT_G_ERROR}"
 

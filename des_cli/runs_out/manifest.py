@@ -15,13 +15,20 @@ import numpy as np
 
 from des_cli import __version__
 from des_cli.errors import Complaint, FileAccessError
-from des_cli.model.profile import Profile
+from des_cli.model.run import Run
+from des_cli.profiles_in.machine_yaml import machine_mapping
 from des_cli.runs_out import atomic
+from des_cli.runs_out.blas import blas_kernels
 
-RUN_FORMAT = "des-coriolis/run/1"
+RUN_FORMAT = "des-coriolis/run/2"
+UNSEALED_FORMAT = "des-coriolis/run/1"
+"""Of earlier versions: without a seal, and without the machine."""
+
 MANIFEST = "manifest.json"
 
 _SHA256 = re.compile(r"[0-9a-f]{64}")
+_SEAL = re.compile(rb',\n  "sha256": "([0-9a-f]{64})"\n\}\n\Z')
+"""The end of a sealed manifest: the digest of all bytes before it."""
 
 
 def encode_json(content: Mapping[str, Any]) -> bytes:
@@ -33,26 +40,40 @@ def encode_json(content: Mapping[str, Any]) -> bytes:
     return (json.dumps(_plain(content), indent=2, allow_nan=False) + "\n").encode()
 
 
-def encode_manifest(profile: Profile, outputs: Mapping[str, bytes]) -> bytes:
-    """Return the manifest of the outputs of a profile.
+def encode_manifest(run: Run, outputs: Mapping[str, bytes]) -> bytes:
+    """Return the manifest of the outputs of a run: what they are, and of what.
+
+    Its last entry is a digest of everything before it, so that a change of the manifest
+    itself is seen.
 
     Parameters
     ----------
-    profile : Profile
+    run : Run
     outputs : mapping of str to bytes
         File names, as seen from the folder, and what is in the files.
     """
-    return encode_json(
+    profile = run.profile
+    return seal(
         {
             "format": RUN_FORMAT,
-            "tool": {"name": "des-coriolis", "version": __version__},
+            "tool": {"name": "des-coriolis", "version": __version__, "blas": blas_kernels()},
             "profile": {"name": profile.name, "sha256": profile.sha256},
+            "machine": machine_mapping(profile.machine),
+            "seat": {"yaw_rad": run.seat.yaw, "pitch_rad": run.seat.pitch},
+            "start": {"arm_rad": float(run.commands.angle[0, 0])},
+            "limits": profile.reduction.limits,
             "files": [
                 {"name": name, "size": len(data), "sha256": hashlib.sha256(data).hexdigest()}
                 for name, data in outputs.items()
             ],
         }
     )
+
+
+def seal(content: Mapping[str, Any]) -> bytes:
+    """Return JSON whose last entry is the digest of everything before it."""
+    body = encode_json(content).removesuffix(b"\n}\n")
+    return b'%b,\n  "sha256": "%b"\n}\n' % (body, hashlib.sha256(body).hexdigest().encode())
 
 
 def is_run(folder: str | os.PathLike[str]) -> bool:
@@ -81,8 +102,9 @@ def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
     with atomic.plain_words(path, "cannot be read"):
         if not path.exists():
             raise FileAccessError([Complaint(str(folder), f"is not a run: it has no {MANIFEST}")])
-    manifest = parse_object(path, read_bytes(path))
-    complaints = [Complaint(str(path), what) for what in _malformed(manifest)]
+    data = read_bytes(path)
+    manifest = parse_object(path, data)
+    complaints = [Complaint(str(path), what) for what in _malformed(manifest, data)]
     if complaints:
         raise FileAccessError(complaints)
     return manifest
@@ -105,10 +127,20 @@ def parse_object(path: Path, data: bytes) -> dict[str, Any]:
     return content
 
 
-def _malformed(manifest: Mapping[str, Any]) -> list[str]:
+def is_sealed(manifest: Mapping[str, Any]) -> bool:
+    """Tell the manifest of this version, sealed and with its machine, from an earlier one."""
+    return manifest["format"] == RUN_FORMAT
+
+
+def _malformed(manifest: Mapping[str, Any], data: bytes) -> list[str]:
     """Return what is wrong with the form of a manifest, a sentence each."""
-    if manifest.get("format") != RUN_FORMAT:
+    if manifest.get("format") not in (RUN_FORMAT, UNSEALED_FORMAT):
         return [f"is not the manifest of a run: its format is not {RUN_FORMAT}"]
+    if is_sealed(manifest) or "sha256" in manifest:
+        found = _SEAL.search(data)
+        body = data[: found.start()] if found else b""
+        if found is None or hashlib.sha256(body).hexdigest().encode() != found[1]:
+            return ["was changed after the run: its own sha256 is not that of what it says"]
     wrong = []
     profile = manifest.get("profile")
     if not isinstance(profile, dict) or not isinstance(profile.get("name"), str):

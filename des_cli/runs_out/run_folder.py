@@ -59,6 +59,8 @@ class StoredRun:
         The columns of ``trajectory.parquet``.
     manifest : dict
         The content of ``manifest.json``.
+    commands : bytes
+        The command table, not read.
     """
 
     name: str
@@ -66,6 +68,7 @@ class StoredRun:
     metrics: dict[str, Any]
     trajectory: dict[str, Floats]
     manifest: dict[str, Any]
+    commands: bytes = b""
 
 
 def write_run(
@@ -112,7 +115,7 @@ def write_run(
     target = Path(folder)
     _require_free(target, overwrite)
     outputs = _outputs(run, plots)
-    outputs[MANIFEST] = encode_manifest(run.profile, outputs)
+    outputs[MANIFEST] = encode_manifest(run, outputs)
     if target.is_dir():
         _fill(target, outputs, accept)
     else:
@@ -142,7 +145,7 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
         if len(data) != entry["size"] or hashlib.sha256(data).hexdigest() != entry["sha256"]:
             what = "is not the file that the manifest lists: it was changed after the run"
             complaints.append(Complaint(str(path), what))
-        if entry["name"] in (METRICS, TRAJECTORY):
+        if entry["name"] in (COMMANDS, METRICS, TRAJECTORY):
             content[entry["name"]] = data
     listed = {entry["name"] for entry in manifest["files"]}
     complaints += [
@@ -158,6 +161,7 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
         metrics=parse_object(home / METRICS, content[METRICS]),
         trajectory=_read_trajectory(home / TRAJECTORY, content[TRAJECTORY]),
         manifest=manifest,
+        commands=content[COMMANDS],
     )
 
 

@@ -95,7 +95,7 @@ def _json(data: bytes) -> Floats:
         # Pairs, so that a name that stands twice is seen.
         rows: Any = json.loads(data, object_pairs_hook=tuple)
     except (ValueError, RecursionError):
-        raise _UnlikeError("it is not JSON") from None
+        raise _UnlikeError("it is not the JSON of rows") from None
     for number, row in enumerate(rows, start=1):
         named = isinstance(row, tuple) and tuple(name for name, _ in row) == COLUMNS
         if not named or not all(type(value) is float for _, value in row):

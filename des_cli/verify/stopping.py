@@ -117,8 +117,11 @@ def stopping_checks(
 def excess(state: State, limit: JointLimits) -> float:
     """Return by how much a joint must pass a limit of angle or rate to come to rest, relative.
 
-    Negative where it need not.
+    Negative where it need not; not a number where a limit is no positive number.
     """
+    limits = (limit.angle, limit.rate, limit.acceleration, limit.jerk)
+    if not all(each > 0.0 for each in limits):
+        return math.nan
     reach = best_reach(state, limit)
     return max(
         max(reach.most, -reach.least) / limit.angle - 1.0 if math.isfinite(limit.angle) else -1.0,

@@ -40,6 +40,9 @@ OCCUPANT_TOLERANCE = 1e-2
 RIDE_TOLERANCE = 0.05
 """Relative excess over a number that was told of the ride."""
 
+LEAST_ROWS = 3
+"""Of a table, from which an acceleration follows."""
+
 LEAST_TOLD = 0.05
 """Of a number of the ride, in rad/s^2 or g, below which its excess is not relative to it."""
 
@@ -136,29 +139,68 @@ class Played:
         return Motion(middle, between, rate[:-1], rate[1:])
 
 
+@dataclass(frozen=True)
+class Ride:
+    """What the seat does along the rows, as far as they tell.
+
+    Parameters
+    ----------
+    t : (m,) array
+        Middles of the intervals between the rows' middles, m = n - 2 [s].
+    turning_rms, turning_peak : float
+        Of the total angular acceleration dW/dt [rad/s^2].
+    g : (3, 2 m) array
+        G-vector at the start of every interval, then at the end of every one [g].
+    """
+
+    t: Floats
+    turning_rms: float
+    turning_peak: float
+    g: Floats
+
+    @property
+    def mean_g(self) -> Floats:
+        """Of each interval, (3, m) [g]."""
+        m = len(self.t)
+        return 0.5 * (self.g[:, :m] + self.g[:, m:])
+
+
+def ride_of(table: CommandTable, machine: Machine, seat: Seat) -> Ride:
+    """Return what the seat does along a table of at least ``LEAST_ROWS`` rows."""
+    motion = Played(table).middles
+    felt = SeatChain(machine, seat).along(motion)
+    square = np.sum(felt.turning**2, axis=0)
+    weight = np.tile(motion.step, 2)
+    return Ride(
+        motion.t[:-1] + 0.5 * motion.step,
+        float(np.sqrt(weight @ square / np.sum(weight))),
+        float(np.sqrt(np.max(square))),
+        felt.g,
+    )
+
+
 def check_times(table: CommandTable) -> Check:
     """Count the rows whose time does not rise."""
     back = float(np.sum(~(table.step > 0.0)))
     return Check("table.times", "count of rows whose time does not rise", back, 0.0)
 
 
-def check_rows(table: CommandTable, motion: Motion) -> list[Check]:
-    """Compare a table with the motion that it is to play, to the last bits.
+def check_rows(table: CommandTable, right: CommandTable) -> list[Check]:
+    """Compare a table with what it is to be, to the last bits.
 
     Parameters
     ----------
-    table : CommandTable
-    motion : Motion
+    table, right : CommandTable
     """
-    off = abs(len(table.t) - len(motion.t))
+    off = abs(len(table.t) - len(right.t))
     checks = [Check("table.rows", "rows too many or too few", float(off), 0.0)]
     if off:
         return checks
-    expected = (motion.t, motion.rate[:, 0], motion.angle[:, 1], motion.angle[:, 2])
     names = {"t": "times [s]", "arm": "arm [rad/s]", "fork": "fork [rad]", "cab": "cab [rad]"}
-    for (key, name), found, right in zip(names.items(), table.values.T, expected, strict=True):
-        size = float(np.max(np.abs(right)))
-        apart = float(np.max(np.abs(found - right)))
+    columns = zip(names.items(), table.values.T, right.values.T, strict=True)
+    for (key, name), found, expected in columns:
+        size = float(np.max(np.abs(expected)))
+        apart = float(np.max(np.abs(found - expected)))
         tolerance = 0.0 if key == "t" else ROUNDING * size
         checks.append(
             Check(f"table.{key}", f"gap between rows and solution, {name}", apart, tolerance)
@@ -189,7 +231,7 @@ def check_against(
         first, last = course.end(last=False), course.end(last=True)
         checks += stopping_checks(joint, limit, first, last, STOPPING_TOLERANCE)
     motion = played.middles
-    if machine.occupant.bounded and len(motion.t) > 1:
+    if machine.occupant.bounded and len(table.t) >= LEAST_ROWS:
         felt = SeatChain(machine, seat).along(motion)
         checks += [
             Check(
@@ -217,17 +259,15 @@ def check_ride(told: Felt, table: CommandTable, machine: Machine, seat: Seat) ->
         Of the maneuver, without leads.
     machine, seat : Machine, Seat
     """
-    motion = Played(table).middles
-    if len(motion.t) < 2:
+    if len(table.t) < LEAST_ROWS:
         return []
-    felt = SeatChain(machine, seat).along(motion)
-    turning = np.sqrt(np.sum(felt.turning**2, axis=0))
+    ride, sizes = ride_of(table, machine, seat), told.turning
     pairs = [
-        ("turning_rms", "angular acceleration, rms", told.turning.rms.after, _rms(motion, turning)),
-        ("turning_peak", "angular acceleration, peak", told.turning.peak.after, np.max(turning)),
+        ("turning_rms", "angular acceleration, rms", sizes.rms.after, ride.turning_rms),
+        ("turning_peak", "angular acceleration, peak", sizes.peak.after, ride.turning_peak),
         *(
             (f"{axis}_peak", f"peak {axis.capitalize()}", told.seat_g[axis].peak.after, np.max(g))
-            for axis, g in zip(G_AXES, np.abs(felt.g), strict=True)
+            for axis, g in zip(G_AXES, np.abs(ride.g), strict=True)
         ),
     ]
     return [
@@ -242,12 +282,6 @@ def check_ride(told: Felt, table: CommandTable, machine: Machine, seat: Seat) ->
     ]
 
 
-def _rms(motion: Motion, values: Floats) -> float:
-    """Return the root mean square over time of values at both ends of every step, (2 m,)."""
-    weight = np.tile(motion.step, 2)
-    return float(np.sqrt(weight @ values**2 / np.sum(weight)))
-
-
 def _limits(joint: str, limit: JointLimits, course: Course) -> Iterator[Check]:
     for quantity in ("angle", "rate", "acceleration", "jerk"):
         bound = getattr(limit, quantity)
@@ -255,10 +289,12 @@ def _limits(joint: str, limit: JointLimits, course: Course) -> Iterator[Check]:
             continue
         values = getattr(course, quantity)
         largest = float(np.max(np.abs(values), initial=0.0))
-        share = max(largest - course.rounding.get(quantity, 0.0), 0.0) / bound - 1.0
+        # What is no positive number is no limit that anything keeps.
+        over = max(largest - course.rounding.get(quantity, 0.0), 0.0)
+        share = over / bound - 1.0 if bound > 0.0 else np.nan
         yield Check(
             f"limits.{joint}.{quantity}",
             f"excess of the {joint}'s {quantity} over its limit",
-            share if bound >= 0.0 else np.nan,
+            share,
             LIMIT_TOLERANCE,
         )

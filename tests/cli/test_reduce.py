@@ -199,8 +199,9 @@ def test_verbose_prints_a_line_for_each_iteration(invoke, small: str, tmp_path) 
     assert float(log[-1][1]) == pytest.approx(solver["cost"], rel=1e-6)
 
 
-def test_quiet_says_nothing_of_a_clean_run(invoke, small: str) -> None:
-    result = invoke("-q", "reduce", small, "-o", "x.csv")
+def test_quiet_says_nothing_of_a_clean_run(invoke, write_profile) -> None:
+    clean = write_profile("clean", r2="100").name
+    result = invoke("-q", "reduce", clean, "-o", "x.csv")
     assert (result.exit_code, result.stdout, result.stderr) == (0, "", "")
 
 

@@ -24,7 +24,7 @@ def test_the_sections_of_the_file_stand_in_their_order() -> None:
     assert list(mapping) == [
         *("profile", "solver", "parameters", "asked_g", "coriolis", "fidelity", "added"),
         *("felt", "changes", "executable", "baseline", "limits", "singularity"),
-        *("violations", "notices"),
+        *("violations", "notices", "notice_names"),
     ]
     assert json.loads(json.dumps(mapping)) == mapping
     mapping["notices"].append("mine")

@@ -202,4 +202,4 @@ def test_an_asked_g_goes_through_to_a_released_run() -> None:
     run.require_release()
     assert run.metrics["asked_g"]["rms_g"] < 0.02
     assert not run.metrics["executable"]["replaced"]
-    assert any("G that is asked" in notice for notice in run.notices)
+    assert any("G that is asked" in notice.text for notice in run.notices)

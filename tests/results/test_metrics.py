@@ -182,4 +182,4 @@ def test_singularity_of_body_rates():
     assert found["damped_samples"] == int(run.asked.damped.sum()) > 0
     residual = np.linalg.norm(run.asked.residual, axis=1).max()
     assert found["max_residual_rad_s"] == pytest.approx(residual)
-    assert any("damped" in notice for notice in run.notices)
+    assert any("damped" in notice.text for notice in run.notices)

@@ -24,7 +24,8 @@ PROFILE = Profile(
 
 
 def find_notices(profile: Profile, asked: DesiredMotion, metrics: dict[str, Any]) -> list[str]:
-    return notices.find_notices(profile, asked, read_metrics(metrics))
+    found = notices.find_notices(profile, asked, read_metrics(metrics))
+    return [notice.text for notice in found]
 
 
 def asked(*, damped: tuple[int, ...] = ()) -> DesiredMotion:

@@ -13,8 +13,16 @@ import pytest
 from des_cli import __version__
 from des_cli.errors import FileAccessError
 from des_cli.model.run import Run
-from des_cli.runs_out.manifest import encode_json, is_run, read_manifest
-from des_cli.runs_out.run_folder import read_run
+from des_cli.profiles_in.machine_yaml import machine_mapping
+from des_cli.runs_out.blas import blas_kernels
+from des_cli.runs_out.manifest import (
+    UNSEALED_FORMAT,
+    encode_json,
+    is_run,
+    is_sealed,
+    read_manifest,
+)
+from des_cli.runs_out.run_folder import read_run, write_run
 from tests.support.run_files import entry, rewrite, tree
 
 MakeRun = Callable[..., Run]
@@ -22,8 +30,9 @@ MakeRun = Callable[..., Run]
 
 def test_the_manifest_lists_every_file_with_size_and_digest(stored: Path) -> None:
     manifest = json.loads((stored / "manifest.json").read_bytes())
-    assert manifest["format"] == "des-coriolis/run/1"
-    assert manifest["tool"] == {"name": "des-coriolis", "version": __version__}
+    assert manifest["format"] == "des-coriolis/run/2"
+    tool = {"name": "des-coriolis", "version": __version__, "blas": blas_kernels()}
+    assert manifest["tool"] == tool
     assert manifest["profile"] == {"name": "cobra", "sha256": "5c" * 32}
     listed = {entry["name"]: entry for entry in manifest["files"]}
     files = tree(stored)
@@ -36,8 +45,8 @@ def test_the_manifest_lists_every_file_with_size_and_digest(stored: Path) -> Non
 @pytest.mark.parametrize(
     "changes",
     [
-        {"format": "des-coriolis/run/2"},
-        {"format": ["des-coriolis/run/1"]},
+        {"format": "des-coriolis/run/3"},
+        {"format": ["des-coriolis/run/2"]},
         {"profile": {}},
         {"profile": {"name": 7}},
         {"files": None},
@@ -58,6 +67,48 @@ def test_a_manifest_of_another_form_is_no_run(stored: Path, changes: dict[str, A
     assert not is_run(stored)
     with pytest.raises(FileAccessError, match=r"manifest\.json"):
         read_run(stored)
+
+
+def test_the_manifest_tells_what_is_needed_to_check_the_table_again(
+    synthetic_run: MakeRun, tmp_path: Path
+) -> None:
+    run = synthetic_run()
+    write_run(run, tmp_path / "run", plots=False)
+    manifest = read_manifest(tmp_path / "run")
+    assert manifest["machine"] == machine_mapping(run.profile.machine)
+    assert manifest["seat"] == {"yaw_rad": run.seat.yaw, "pitch_rad": run.seat.pitch}
+    assert manifest["start"] == {"arm_rad": run.commands.angle[0, 0]}
+    assert manifest["limits"] == run.profile.reduction.limits
+
+
+def test_a_manifest_that_is_cut_anywhere_is_no_run(stored: Path) -> None:
+    path = stored / "manifest.json"
+    whole = path.read_bytes()
+    for length in range(len(whole)):
+        path.write_bytes(whole[:length])
+        assert not is_run(stored), length
+
+
+def test_a_manifest_with_a_changed_byte_is_no_run(stored: Path) -> None:
+    path = stored / "manifest.json"
+    whole = path.read_bytes()
+    rng = np.random.default_rng(3)
+    for place in range(len(whole)):
+        changed = bytearray(whole)
+        changed[place] ^= int(rng.integers(1, 256))
+        path.write_bytes(bytes(changed))
+        assert not is_run(stored), place
+    path.write_bytes(whole + b"\n")
+    assert not is_run(stored)
+    path.write_bytes(whole)
+    assert is_run(stored)
+
+
+def test_a_run_of_an_earlier_version_is_read_without_a_seal(stored: Path) -> None:
+    manifest = json.loads((stored / "manifest.json").read_bytes())
+    old = {key: manifest[key] for key in ("profile", "files")} | {"format": UNSEALED_FORMAT}
+    (stored / "manifest.json").write_bytes(encode_json(old))
+    assert not is_sealed(read_run(stored).manifest)
 
 
 @pytest.mark.parametrize(

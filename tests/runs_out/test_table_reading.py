@@ -67,8 +67,8 @@ def test_numbers_by_hand() -> None:
         ('{"t_s": 0.0, "t_s": 1.0, "arm_rpm": 1.0, "fork_deg": 1.0, "cab_deg": 1.0}\n', "row 1"),
         ('{"t_s": "0", "arm_rpm": 1.0, "fork_deg": 1.0, "cab_deg": 1.0}\n', "row 1"),
         ('{"t_s": true, "arm_rpm": 1.0, "fork_deg": 1.0, "cab_deg": 1.0}\n', "row 1"),
-        ("[" * 100_000 + "\n", "it is not JSON"),
-        ("{\n", "it is not JSON"),
+        ("[" * 100_000 + "\n", "it is not the JSON of rows"),
+        ("{\n", "it is not the JSON of rows"),
         ("PAR1 and no more", "it is not Parquet"),
     ],
 )

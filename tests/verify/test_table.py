@@ -148,13 +148,13 @@ def motion_of(table: CommandTable) -> Motion:
 
 def test_rows_are_compared_to_the_last_bits() -> None:
     table = swing(T)
-    assert all(c.ok for c in check_rows(table, motion_of(table)))
+    assert all(c.ok for c in check_rows(table, table))
     for column, key in enumerate(("table.t", "table.arm", "table.fork", "table.cab")):
         values = table.values.copy()
         values[17, column] += 1e-14
         off = CommandTable(values[:, 0], values[:, 1], values[:, 2:])
-        assert [c.key for c in check_rows(off, motion_of(table)) if not c.ok] == [key]
-    assert [c.key for c in check_rows(table.between(0, 5), motion_of(table))] == ["table.rows"]
+        assert [c.key for c in check_rows(off, table) if not c.ok] == [key]
+    assert [c.key for c in check_rows(table.between(0, 5), table)] == ["table.rows"]
 
 
 def test_a_ride_harder_than_it_is_told_is_found() -> None:

@@ -1,0 +1,193 @@
+"""``des-coriolis verify``: may this table be loaded."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.console import Console
+from des_cli.cli.options import fail_on_option, text_or_json_option, verbosity_options
+from des_cli.cli.source_options import machine_option, read_stdin
+from des_cli.cli.state_options import in_si, state_options
+from des_cli.cli.stdout import write_data
+from des_cli.errors import DesError, ExitCode, Failure
+
+if TYPE_CHECKING:
+    from des_cli.model.machine import Machine
+    from des_cli.release.stored import Verdict
+
+STANDING = (
+    ("arm", "angle"),
+    ("arm", "rate"),
+    ("fork", "angle"),
+    ("cab", "angle"),
+    ("seat_yaw", "angle"),
+    ("seat_pitch", "angle"),
+)
+"""What is told of the machine that is to play a table."""
+
+DEFAULT_MACHINE = "des"
+
+STARTS = (("arm", "rate"), ("fork", "angle"), ("cab", "angle"))
+"""What the first row of a table says."""
+
+
+@click.command(
+    short_help="Check a run or a command table before a machine loads it.",
+    epilog="""\b
+Examples:
+  des-coriolis verify runs/cobra_felt
+  des-coriolis verify commands.csv --machine ours.yaml --fork-deg 0 --cab-deg 30 --arm-rpm 8.8
+  des-coriolis verify runs/* --fail-on notice --format json
+""",
+)
+@click.argument("targets", metavar="RUN|TABLE...", nargs=-1, required=True)
+@machine_option
+@state_options(STANDING)
+@fail_on_option
+@text_or_json_option("json prints one object a line, with every check.")
+@verbosity_options
+@click.pass_obj
+def verify(
+    console: Console,
+    targets: tuple[str, ...],
+    machine: str | None,
+    fail_on: frozenset[str],
+    form: str,
+    **numbers: float | None,
+) -> ExitCode:
+    """Measure each RUN folder or command TABLE anew, and say whether a machine may play it.
+
+    Of a RUN, every file is compared with the manifest, and the table with the
+    solution and with what the metrics tell. Of any table, the limits of the
+    joints, the bounds for the occupant, and whether the first row can be
+    reached from rest and the last one left to rest are measured from its rows
+    alone. "-" is a table on stdin.
+
+    Options say where the machine stands: the first row must be there. The seat
+    and the arm's angle are a run's own; a table alone does not tell them.
+
+    The exit code is 0, 3 for what is no whole run or no command table, or 5
+    for what is not to be played.
+    """
+    from des_cli.profiles_in.machine_file import load_machine
+
+    given = in_si({name: value for name, value in numbers.items() if value is not None})
+    other = None if machine is None else load_machine(machine, "--machine")
+    stdin = read_stdin(targets)
+    codes = [ExitCode.DONE]
+    for target in targets:
+        try:
+            verdict = _verdict(target, stdin, other, given)
+        except (DesError, OSError) as error:
+            failure = Failure.of(error)
+            codes.append(failure.exit_code)
+            console.failure(failure)
+            facts: dict[str, Any] = {"exit_code": failure.exit_code, "problems": failure.lines}
+        else:
+            codes.append(_told(console, target, verdict, fail_on, form))
+            facts = _facts(verdict, codes[-1])
+        if form == "json":
+            _write(console, json.dumps({"target": target, "ok": not facts["exit_code"], **facts}))
+    # The worst of several: a table that is not to be played before a file that is none.
+    return max(codes)
+
+
+def _verdict(
+    target: str,
+    stdin: bytes | None,
+    machine: Machine | None,
+    given: dict[tuple[str, str], float],
+) -> Verdict:
+    import numpy as np
+
+    from des_cli.model.machine import Seat
+    from des_cli.model.machines import MACHINES
+    from des_cli.profiles_in.source import read_source
+    from des_cli.release.stored import check_stored_run, check_stored_table
+
+    start = np.array([given.get(quantity, math.nan) for quantity in STARTS])
+    is_run = target != STANDARD_STREAM and Path(target).is_dir()
+    if is_run:
+        _refuse_of_run(given)
+        return check_stored_run(target, machine, start)
+    data = stdin if target == STANDARD_STREAM else read_source(Path(target), target)
+    assert data is not None, "stdin was read"
+    seat = Seat()
+    return check_stored_table(
+        data,
+        "stdin" if target == STANDARD_STREAM else target,
+        machine or MACHINES[DEFAULT_MACHINE],
+        Seat(
+            given.get(("seat_yaw", "angle"), seat.yaw),
+            given.get(("seat_pitch", "angle"), seat.pitch),
+        ),
+        start,
+        given.get(("arm", "angle"), 0.0),
+    )
+
+
+def _refuse_of_run(given: dict[tuple[str, str], float]) -> None:
+    own = [stem.replace("_", " ") for stem, kind in given if (stem, kind) not in STARTS]
+    if own:
+        raise click.UsageError(
+            f"the {' and the '.join(own)} angle is a run's own: give it for a table alone."
+        )
+
+
+def _told(
+    console: Console, target: str, verdict: Verdict, fail_on: frozenset[str], form: str
+) -> ExitCode:
+    """Print a verdict, and return its exit code."""
+    console.warn((f"{target}: {check.key}: {check}" for check in verdict.failed), "error")
+    refused = [notice for notice in verdict.notices if notice.name in fail_on]
+    for notice in verdict.notices:
+        style = "error" if notice in refused else "warning"
+        console.warn([f"{target}: {notice.name}: {notice.text}"], style)
+    if verdict.failed or refused:
+        return ExitCode.NOT_RELEASED
+    if form == "text":
+        _write(console, _line(target, verdict))
+    return ExitCode.DONE
+
+
+def _line(target: str, verdict: Verdict) -> str:
+    table = verdict.table
+    name = f"{verdict.name}, " if verdict.name else ""
+    return (
+        f"{target}: ok: {name}{len(table.t)} rows, {table.t[-1] - table.t[0]:g} s, machine "
+        f"{verdict.machine.name}; {len(verdict.checks)} checks"
+    )
+
+
+def _facts(verdict: Verdict, code: ExitCode) -> dict[str, Any]:
+    table = verdict.table
+    return {
+        "exit_code": code,
+        "name": verdict.name or None,
+        "machine": verdict.machine.name,
+        "rows": len(table.t),
+        "duration_s": float(table.t[-1] - table.t[0]),
+        "problems": [f"{check.key}: {check}" for check in verdict.failed],
+        "notices": [{"name": each.name, "text": each.text} for each in verdict.notices],
+        "checks": [
+            {
+                "key": check.key,
+                "name": check.name,
+                "value": check.value if math.isfinite(check.value) else None,
+                "tolerance": check.tolerance,
+                "ok": check.ok,
+            }
+            for check in verdict.checks
+        ],
+    }
+
+
+def _write(console: Console, line: str) -> None:
+    with console.aside():
+        write_data(line + "\n")

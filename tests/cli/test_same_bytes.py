@@ -1,0 +1,45 @@
+"""The same input gives the same bytes, whatever surrounds the process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.support.run_files import tree
+
+PROFILES = ("one", "two")
+
+
+@pytest.fixture
+def reduced(command, write_profile, tmp_path: Path) -> Callable[..., dict[str, bytes]]:
+    """Reduce two profiles in a process of its own; return the files by their names."""
+    one, two = (write_profile(name, r2=r2).name for name, r2 in (("one", "0.5"), ("two", "2")))
+
+    def reduce(out: str, *options: str, **env: str) -> dict[str, bytes]:
+        names = (two, one) if "--jobs" in options else (one, two)
+        done = command("-q", "reduce", *names, "-o", out, *options, env=env)
+        assert done.returncode == 0, done.stderr
+        return tree(tmp_path / out)
+
+    return reduce
+
+
+@pytest.mark.slow
+def test_bytes_do_not_depend_on_what_surrounds_the_process(reduced) -> None:
+    plain = reduced("a", PYTHONHASHSEED="0", TZ="UTC", LC_ALL="C.UTF-8")
+    assert {name.partition("/")[0] for name in plain} == set(PROFILES)
+    assert any(name.endswith(".png") for name in plain)
+    other = reduced(
+        *("b", "--jobs", "2"),
+        PYTHONHASHSEED="4242",
+        TZ="Asia/Kathmandu",
+        LC_ALL="tr_TR.UTF-8",
+        LANG="de_DE.UTF-8",
+        OPENBLAS_NUM_THREADS="2",
+        OMP_NUM_THREADS="2",
+        COLUMNS="40",
+        PYTHONOPTIMIZE="1",
+    )
+    assert other == plain
