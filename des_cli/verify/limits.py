@@ -35,7 +35,7 @@ def check_limits(claim: Claim) -> list[Check]:
                 checks.append(
                     Check(
                         f"limits.{joint}.{quantity}",
-                        f"excess of the {joint}'s {quantity} over its limit",
+                        f"relative excess of the {joint}'s {quantity} over its limit",
                         float(np.max(values[:, j])) / bound - 1.0,
                         LIMIT_TOLERANCE,
                     )

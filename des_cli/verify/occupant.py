@@ -33,7 +33,12 @@ def check_occupant(bounds: OccupantBounds, motion: Motion, felt: Felt) -> list[C
         At its states.
     """
     return [
-        Check(f"occupant.{key}", f"excess of the occupant's {name}", excess, OCCUPANT_TOLERANCE)
+        Check(
+            f"occupant.{key}",
+            f"relative excess of the occupant's {name}",
+            excess,
+            OCCUPANT_TOLERANCE,
+        )
         for key, name, excess in (
             (key, name, float(np.max(values)))
             for key, name, values in excesses(bounds, motion, felt)

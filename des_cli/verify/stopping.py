@@ -109,7 +109,7 @@ def stopping_checks(
         ("start", "to reach the first row from rest", first.reversed),
         ("end", "to come to rest after the last row", last),
     ):
-        name = f"excess of the {joint} over its limits {way}"
+        name = f"relative excess of the {joint} over its limits {way}"
         cure = f"let the {joint} {'begin' if key == 'start' else 'end'} slower, or farther from it"
         yield Check(f"stopping.{joint}.{key}", name, excess(state, limit), tolerance, cure)
 

@@ -236,7 +236,7 @@ def check_against(
         checks += [
             Check(
                 f"occupant.{key}",
-                f"excess of the occupant's {name}",
+                f"relative excess of the occupant's {name}",
                 float(np.max(values)),
                 OCCUPANT_TOLERANCE,
             )
@@ -273,7 +273,7 @@ def check_ride(told: Felt, table: CommandTable, machine: Machine, seat: Seat) ->
     return [
         Check(
             f"ride.{key}",
-            f"excess of the {name} over what the metrics tell",
+            f"relative excess of the {name} over what the metrics tell",
             float(found) / max(value, LEAST_TOLD) - 1.0,
             RIDE_TOLERANCE,
         )
@@ -294,7 +294,7 @@ def _limits(joint: str, limit: JointLimits, course: Course) -> Iterator[Check]:
         share = over / bound - 1.0 if bound > 0.0 else np.nan
         yield Check(
             f"limits.{joint}.{quantity}",
-            f"excess of the {joint}'s {quantity} over its limit",
+            f"relative excess of the {joint}'s {quantity} over its limit",
             share,
             LIMIT_TOLERANCE,
         )
