@@ -28,6 +28,7 @@ def reference() -> dict[str, Ended]:
     return on_kernel(KERNELS[0], NAMES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kernel", KERNELS[1:])
 def test_status_and_reduction_are_those_of_another_kernel(
     kernel: str, reference: dict[str, Ended]

@@ -193,6 +193,7 @@ def words(said: str) -> str:
     return re.sub(r"\r\x1b\[K[^\r]*(?=\r\x1b\[K)", "", said).replace(ERASE, "").replace("\r", "")
 
 
+@pytest.mark.slow
 def test_one_profile_on_a_terminal_names_its_stages(
     on_terminal: OnTerminal, write_profile: Callable[..., Path], command
 ) -> None:

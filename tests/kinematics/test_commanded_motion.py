@@ -240,6 +240,7 @@ class TestBodyRates:
             seat_rate[:, 0], command.start - desired_residual(desired)[:, 0], atol=1e-12
         )
 
+    @pytest.mark.slow
     @settings(max_examples=12)
     @given(
         amplitude=st.lists(st.floats(-6.0, 6.0), min_size=6, max_size=6),

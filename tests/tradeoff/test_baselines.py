@@ -55,6 +55,7 @@ def test_constant_factors_are_those_of_the_formula(by_weight: Rows) -> None:
         assert point["cost"] == ""
 
 
+@pytest.mark.slow
 def test_the_optimum_beats_a_constant_factor_of_the_same_deviation(by_budget: Rows) -> None:
     constant = curve(by_budget, "constant-p")
     slow = np.interp(

@@ -25,6 +25,7 @@ HOSTILE = [
 ]
 
 
+@pytest.mark.slow
 def test_the_page_has_every_run_figure_and_word_of_the_contract(
     stored: Callable[..., StoredRun],
 ) -> None:
@@ -56,6 +57,7 @@ def test_the_page_has_every_run_figure_and_word_of_the_contract(
     assert all((link["href"] or "")[1:] in targets for link in page.all("a"))
 
 
+@pytest.mark.slow
 def test_the_page_asks_for_nothing_from_elsewhere(stored: Callable[..., StoredRun]) -> None:
     text = render_report([stored()])
     page = Page(text)

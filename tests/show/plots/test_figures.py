@@ -84,12 +84,14 @@ def test_standing_budget_and_changes_are_on_the_figures_they_belong_to(
     assert {name for name in plain if plain[name] != changed[name]} == figures
 
 
+@pytest.mark.slow
 def test_a_free_motion_has_no_figure_of_factors_and_adjoint() -> None:
     run = make_run(11, control="free")
     figures = figures_of(run)
     assert list(figures) == [name for name in CAPTIONS if name not in ("factor", "adjoint")]
 
 
+@pytest.mark.slow
 def test_pyplot_stays_out() -> None:
     run = make_run(11)
     figures_of(run)
