@@ -10,6 +10,7 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.response import respond, respond_as_requested
 from des_cli.kinematics.smoothing import smooth_command
 from des_cli.model.metric import Budget
+from des_cli.model.metrics import Metrics
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Profile
 from des_cli.model.run import Check, Run
@@ -135,7 +136,7 @@ def reduce_profile(
         commands=led,
         before=before,
         after=after,
-        checks=_checks(profile, asked, target, found, led, most),
+        checks=_checks(profile, asked, target, found, led, most, results),
         violations=measured.violations,
         results=results,
     )
@@ -175,6 +176,7 @@ def _checks(
     found: Found,
     commands: Motion,
     most: tuple[Budget, ...],
+    told: Metrics,
 ) -> tuple[Check, ...]:
     if not found.solution.usable:
         return ()
@@ -190,5 +192,6 @@ def _checks(
         shortfall=asked.shortfall,
         held=found.held,
         most=most,
+        told=told,
     )
     return verify(claim)

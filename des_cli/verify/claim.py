@@ -10,6 +10,7 @@ import numpy as np
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
 from des_cli.model.metric import Budget
+from des_cli.model.metrics import Metrics
 from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution
@@ -56,6 +57,8 @@ class Claim:
         What the profile allows of the whole way from the record, where it does.
     from_profile : bool
         Whether what is asked for is the profile's own record.
+    told : Metrics, optional
+        What a user is told of it.
     """
 
     profile: Profile
@@ -70,6 +73,7 @@ class Claim:
     held: Record | None = None
     most: tuple[Budget, ...] = ()
     from_profile: bool = True
+    told: Metrics | None = None
 
     @cached_property
     def reduced(self) -> Claim:
@@ -135,11 +139,15 @@ class Claim:
         return SeatChain(self.profile.machine, self.profile.seat)
 
     @cached_property
+    def made(self) -> Felt:
+        """What the joints make of what is asked for, at all states."""
+        return self.chain_before.along(self.requested)
+
+    @cached_property
     def before(self) -> Felt:
         """What is asked for at all states."""
-        made = self.chain_before.along(self.requested)
         command = self.profile.command if self.from_profile else None
-        return as_requested(made, command, self.shortfall)
+        return as_requested(self.made, command, self.shortfall)
 
     @cached_property
     def executable(self) -> Felt:

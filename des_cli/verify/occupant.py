@@ -16,7 +16,10 @@ WINDOW = 0.1
 """Time [s] over which a change of G is an onset; see the nomenclature."""
 
 BESIDE = 1e-9
-"""Share of an interval by which a jump at a sample is set apart."""
+"""Share of the longest interval by which a jump at a sample is set apart."""
+
+MEETS = 1e-6
+"""Share of the window within which its other end meets a sample, whatever rounding says."""
 
 OCCUPANT_TOLERANCE = 1e-9
 """Excess over a bound that rounding alone may make, relative to the bound or to one."""
@@ -84,6 +87,11 @@ def steepness(bounds: OccupantBounds, motion: Motion, felt: Felt) -> Floats:
     return np.asarray((slope - bounds.g_onset) / max(1.0, bounds.g_onset))
 
 
+def largest_onsets(motion: Motion, felt: Felt) -> Floats:
+    """Return the largest change of each component of G over ``WINDOW``, (3,) [g/s]."""
+    return np.asarray(np.max(_onset(motion, felt), axis=1))
+
+
 def _onset(motion: Motion, felt: Felt) -> Floats:
     """Return the change of G over ``WINDOW`` that begins or ends at each state, (3, m) [g/s].
 
@@ -93,15 +101,23 @@ def _onset(motion: Motion, felt: Felt) -> Floats:
     """
     t, count = motion.t, len(motion.step)
     window = min(WINDOW, float(t[-1] - t[0]))
-    times = np.concatenate([t[:-1], t[1:]])
     order = np.stack([np.arange(count), np.arange(count) + count], axis=1).ravel()
-    beside = BESIDE * np.repeat(motion.step, 2)
-    corner = times[order] + np.tile([1.0, -1.0], count) * beside
+    here = np.concatenate([t[:-1], t[1:]])[order]
+    beside = min(BESIDE * np.max(motion.step), 0.25 * np.min(motion.step))
+    aside = np.tile([beside, -beside], count)
     onset = np.zeros_like(felt.g)
-    for component, line in zip(onset, felt.g[:, order], strict=True):
-        for shift in (window, -window):
-            other = corner + shift
-            inside = (other >= t[0] - 2.0 * beside) & (other <= t[-1] + 2.0 * beside)
-            change = np.abs(np.interp(other, corner, line) - line) / window
+    for shift in (window, -window):
+        there = here + shift
+        sample = _nearest(t, there)
+        there = np.where(np.abs(there - sample) <= MEETS * window, sample, there)
+        inside = (there >= t[0]) & (there <= t[-1])
+        for component, line in zip(onset, felt.g[:, order], strict=True):
+            change = np.abs(np.interp(there + aside, here + aside, line) - line) / window
             component[order] = np.maximum(component[order], np.where(inside, change, 0.0))
     return onset
+
+
+def _nearest(t: Floats, times: Floats) -> Floats:
+    """Return the sample nearest to each time."""
+    middles = 0.5 * (t[1:] + t[:-1])
+    return np.asarray(t[np.searchsorted(middles, times)])

@@ -29,6 +29,7 @@ from des_cli.verify.leads import check_leads
 from des_cli.verify.limits import check_limits
 from des_cli.verify.occupant import check_occupant
 from des_cli.verify.stopping import check_stopping
+from des_cli.verify.told import check_told
 
 
 def verify(claim: Claim) -> tuple[Check, ...]:
@@ -59,6 +60,7 @@ def verify(claim: Claim) -> tuple[Check, ...]:
         *check_ends(claim),
         *check_hold(claim),
         *own,
+        *([] if claim.told is None else check_told(claim, claim.told)),
     )
 
 

@@ -39,3 +39,24 @@ def test_uneven_grids_and_samples_further_apart_than_the_window():
 def test_a_short_maneuver_is_one_window():
     (found,) = largest_onset(np.array([0.0, 0.05]), sides_of(np.array([1.0, 1.2])))
     assert found == pytest.approx(0.2 / 0.05)
+
+
+@pytest.mark.parametrize("step", [0.1, 0.05, 0.02, 0.01])
+def test_rounding_of_times_does_not_say_which_jumps_count(step):
+    """Samples are a whole fraction of the window apart, and jump at every one."""
+    rng = np.random.default_rng(5)
+    count = round(3.0 / step)
+    sides = rng.normal(size=(count, 2, 3))
+    whole = round(WINDOW / step)
+    rises = [
+        np.abs(sides[k + whole, side] - sides[k, side]) / WINDOW
+        for k in range(count - whole)
+        for side in (0, 1)
+    ]
+    # the first and the last sample have one side
+    rises += [np.abs(sides[whole - 1, 1] - sides[0, 0]) / WINDOW]
+    rises += [np.abs(sides[-1, 1] - sides[count - whole, 0]) / WINDOW]
+    expected = np.max(rises, axis=0)
+    for start in (0.0, 0.1, 1.0 / 3.0, 17.3, 1234.567):
+        t = start + step * np.arange(count + 1)
+        assert largest_onset(t, sides) == pytest.approx(expected, rel=1e-6)

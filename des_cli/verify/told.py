@@ -1,0 +1,264 @@
+"""Whether the metrics of a run tell what its motions do.
+
+The numbers that a user reads are computed by the code that solved. Here they are computed
+anew from the motions, by the seat's second chain. Costs and what a method says of itself are
+checked elsewhere; what simpler means would get (``baseline``), and what single steps of
+conditioning changed (``changes``, ``executable``), are not: their motions are not claimed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from des_cli.model.arrays import Floats
+from des_cli.model.coriolis import COMPONENTS, Component
+from des_cli.model.felt import G_AXES, Felt, RateAxis, TurningAxis
+from des_cli.model.loads import JointLoad
+from des_cli.model.machine import JOINTS
+from des_cli.model.metric import METRICS
+from des_cli.model.metrics import Metrics
+from des_cli.model.motion import Motion
+from des_cli.model.run import Check
+from des_cli.verify import felt as seat
+from des_cli.verify.budgets import measure
+from des_cli.verify.claim import Claim
+from des_cli.verify.limits import STEP_TOLERANCE, magnitudes
+from des_cli.verify.occupant import largest_onsets
+
+TOLD_TOLERANCE = 1e-8
+"""Relative gap between a number and its twin: sums in another order, and cancellations of
+what is felt over what changes."""
+
+SMALL = 1e-3
+"""Magnitude, in the number's unit, below which a gap is relative to this: a rate of
+0.001 rad/s or 0.001 g is not felt."""
+
+WEIGHTLESS = 0.1
+"""Length of a G-vector [g] below which it has no direction that is told."""
+
+AT_LIMIT = 0.99
+"""Share of an acceleration limit from which a joint is told to be at it."""
+
+UNCOUPLED = 1e-6
+"""RMS of a part of the cross-coupling [rad/s^2] below which its reduction is rounding."""
+
+Numbers: TypeAlias = Iterator[tuple[str, float | None, float]]
+"""Name, what is told, and what is found."""
+
+
+def check_told(claim: Claim, told: Metrics) -> list[Check]:
+    """Compare the metrics of a run with its motions, section by section.
+
+    Parameters
+    ----------
+    claim : Claim
+    told : Metrics
+
+    Returns
+    -------
+    list of Check
+        One a section, of the number that is farthest off, which its sentence names.
+    """
+    sections = {
+        "profile": _profile(claim, told),
+        "fidelity": _fidelity(claim, told),
+        "coriolis": _coriolis(claim, told),
+        "felt": _felt(claim, told.felt),
+        "limits": _limits(claim, told),
+    }
+    return [_worst(section, numbers) for section, numbers in sections.items()]
+
+
+def _worst(section: str, numbers: Numbers) -> Check:
+    gaps = {name: _gap(told, found) for name, told, found in numbers}
+    # A gap that is not a number is the worst there is.
+    name = max(gaps, key=lambda each: math.inf if math.isnan(gaps[each]) else gaps[each])
+    return Check(
+        f"told.{section}",
+        f"relative gap between the metrics and the motion, largest of {name}",
+        gaps[name],
+        TOLD_TOLERANCE,
+    )
+
+
+def _gap(told: float | None, found: float) -> float:
+    """Return how far a number is off, relative; what is not told is infinitely far off."""
+    if told is None:
+        return math.inf
+    return abs(told - found) / max(abs(found), SMALL)
+
+
+def _profile(claim: Claim, told: Metrics) -> Numbers:
+    yield "duration_s", told.profile.duration_s, claim.duration
+
+
+def _fidelity(claim: Claim, told: Metrics) -> Numbers:
+    fidelity = told.fidelity
+    for metric in METRICS:
+        value = fidelity.value(metric)
+        # A motion that has no factors has none that deviate.
+        if value is not None or claim.solution.control.shape[1]:
+            yield metric, value, measure(claim, metric, claim.after)
+    tilt, clear = _tilt(claim.before.g, claim.after.g)
+    if np.any(clear):
+        square = float(claim.weight @ np.where(clear, tilt, 0.0) ** 2 / (claim.weight @ clear))
+        yield "tilt_error_max_deg", fidelity.tilt_error_max_deg, float(np.max(tilt[clear]))
+        yield "tilt_error_rms_deg", fidelity.tilt_error_rms_deg, math.sqrt(square)
+    modified, requested = claim.modified, claim.requested
+    squares = claim.weight @ (_states(modified) - _states(requested)) ** 2
+    for j, joint in enumerate(JOINTS):
+        rms = math.sqrt(squares[j] / claim.duration)
+        yield f"joint_rms_rad.{joint}", fidelity.joint_rms_rad.get(joint), rms
+        start, end = fidelity.offset("start"), fidelity.offset("end")
+        for name, offset, row in (("start", start, 0), ("end", end, -1)):
+            angle = modified.angle[row, j] - requested.angle[row, j]
+            yield f"{name}_error.{joint}", offset.angle.get(joint), float(angle)
+        rate = modified.rate_start[0, j] - requested.rate_start[0, j]
+        yield f"start_error.{joint}_rate", start.rate.get(joint), float(rate)
+        rate = modified.rate_end[-1, j] - requested.rate_end[-1, j]
+        yield f"end_error.{joint}_rate", end.rate.get(joint), float(rate)
+
+
+def _tilt(before: Floats, after: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the angle between two G-vectors [deg], and where neither is too short for one.
+
+    By the chord between their directions, whose half is the sine of half the angle.
+    """
+    sizes = _length(before), _length(after)
+    clear = np.minimum(*sizes) >= WEIGHTLESS
+    one, other = (
+        each / np.where(clear, size, 1.0) for each, size in zip((before, after), sizes, strict=True)
+    )
+    half = np.where(clear, 0.5 * _length(one - other), 0.0)
+    return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(half, 1.0)))), clear
+
+
+def _states(motion: Motion) -> Floats:
+    """Return the angles in the order of the claim's weights, (2 (n - 1), 3)."""
+    return np.concatenate([motion.angle[:-1], motion.angle[1:]])
+
+
+def _coriolis(claim: Claim, told: Metrics) -> Numbers:
+    for component in COMPONENTS:
+        part = told.coriolis.parts[component.key]
+        values = [_part(each, component) for each in (claim.made, claim.after)]
+        before, after = (_rms(claim, each) for each in values)
+        name = component.key
+        yield f"{name}.rms_before", part.sizes.rms.before, before
+        yield f"{name}.rms_after", part.sizes.rms.after, after
+        yield f"{name}.peak_before", part.sizes.peak.before, _peak(values[0])
+        yield f"{name}.peak_after", part.sizes.peak.after, _peak(values[1])
+        if before > UNCOUPLED:
+            yield f"{name}.reduction", part.reduction, 1.0 - (after / before) ** 2
+
+
+def _part(felt: seat.Felt, component: Component) -> Floats:
+    if component.axes is None:
+        return _length(felt.cross)
+    along = felt.cross_ground if component.axes == "report" else felt.cross
+    return np.asarray(along[component.index])
+
+
+def _felt(claim: Claim, told: Felt) -> Numbers:
+    before, after = claim.before, claim.after
+    for axis, old, new in zip(
+        get_args(RateAxis), _and_length(before.rate), _and_length(after.rate), strict=True
+    ):
+        rate = told.seat_rate[axis]
+        yield f"seat_rate.{axis}.rms_before", rate.rms.before, _rms(claim, old)
+        yield f"seat_rate.{axis}.rms_after", rate.rms.after, _rms(claim, new)
+        yield f"seat_rate.{axis}.peak_before", rate.peak.before, _peak(old)
+        yield f"seat_rate.{axis}.peak_after", rate.peak.after, _peak(new)
+    for turning_axis, old, new in zip(
+        get_args(TurningAxis), _and_length(before.turning), _and_length(after.turning), strict=True
+    ):
+        turning = told.seat_angular_acceleration[turning_axis]
+        yield f"turning.{turning_axis}.rms_before", turning.rms.before, _rms(claim, old)
+        yield f"turning.{turning_axis}.rms_after", turning.rms.after, _rms(claim, new)
+        yield f"turning.{turning_axis}.peak_before", turning.peak.before, _peak(old)
+        yield f"turning.{turning_axis}.peak_after", turning.peak.after, _peak(new)
+    onsets = [
+        largest_onsets(motion, each)
+        for motion, each in ((claim.requested, before), (claim.modified, after))
+    ]
+    for i, g_axis in enumerate(G_AXES):
+        sizes, old, new = told.seat_g[g_axis], before.g[i], after.g[i]
+        yield f"seat_g.{g_axis}.peak_before", sizes.peak.before, _peak(old)
+        yield f"seat_g.{g_axis}.peak_after", sizes.peak.after, _peak(new)
+        yield f"seat_g.{g_axis}.min_before", sizes.least.before, float(np.min(old))
+        yield f"seat_g.{g_axis}.min_after", sizes.least.after, float(np.min(new))
+        yield f"seat_g.{g_axis}.max_before", sizes.largest.before, float(np.max(old))
+        yield f"seat_g.{g_axis}.max_after", sizes.largest.after, float(np.max(new))
+        yield f"seat_g.{g_axis}.onset_before", sizes.onset.before, float(onsets[0][i])
+        yield f"seat_g.{g_axis}.onset_after", sizes.onset.after, float(onsets[1][i])
+        yield f"seat_g.{g_axis}.jump_before", sizes.jump.before, _jump(old)
+        yield f"seat_g.{g_axis}.jump_after", sizes.jump.after, _jump(new)
+        yield f"seat_g.{g_axis}.rms_error", sizes.rms_error_g, _rms(claim, new - old)
+
+
+def _limits(claim: Claim, told: Metrics) -> Numbers:
+    for which, motion, loads in (
+        ("desired", claim.requested, told.limits.desired),
+        ("modified", claim.modified, told.limits.modified),
+    ):
+        found = magnitudes(motion)
+        step = np.abs(motion.rate_step)
+        for j, (joint, limit) in enumerate(zip(JOINTS, claim.profile.machine.limits, strict=True)):
+            load: JointLoad = loads[joint]
+            name = f"{which}.{joint}"
+            yield f"{name}.rate", load.rate_peak_rad_s, _peak(found["rate"][:, j])
+            acceleration = max(_peak(found["acceleration"][:, j]), _by_position(motion, j))
+            yield f"{name}.acceleration", load.acceleration_peak_rad_s2, acceleration
+            smooth = step[:, j] <= STEP_TOLERANCE
+            yield f"{name}.jerk", load.jerk_peak_rad_s3, _peak(motion.jerk[smooth, j])
+            full = np.abs(motion.acceleration[:, j]) >= AT_LIMIT * limit.acceleration
+            share = float(motion.step @ full / np.sum(motion.step))
+            yield f"{name}.at_acceleration_limit", load.at_acceleration_limit, share
+            yield f"{name}.rate_step", load.rate_step_rad_s, _peak(step[:, j])
+            for driven, own in (
+                ("rate", limit.rate),
+                ("acceleration", limit.acceleration),
+                ("jerk", limit.jerk),
+            ):
+                if math.isfinite(own):
+                    yield f"{name}.{driven}_limit", load.limit(driven), own  # type: ignore[arg-type]
+
+
+def _by_position(motion: Motion, j: int) -> float:
+    """Return the largest second difference of a commanded position [rad/s^2].
+
+    The arm is commanded by its rate, and where a rate steps a difference means nothing.
+    """
+    if j == 0 or len(motion.t) < 3:
+        return 0.0
+    rate = np.diff(motion.angle[:, j]) / motion.step
+    second = np.diff(rate) / (0.5 * (motion.step[1:] + motion.step[:-1]))
+    return _peak(second[np.abs(motion.rate_step[:, j]) <= STEP_TOLERANCE])
+
+
+def _rms(claim: Claim, values: Floats) -> float:
+    return math.sqrt(float(claim.weight @ values**2) / claim.duration)
+
+
+def _peak(values: Floats) -> float:
+    return float(np.max(np.abs(values), initial=0.0))
+
+
+def _jump(values: Floats) -> float:
+    """Return the largest difference of the two sides of a sample."""
+    count = len(values) // 2
+    return _peak(values[1:count] - values[count:-1])
+
+
+def _length(vectors: Floats) -> Floats:
+    return np.asarray(np.sqrt(np.sum(vectors**2, axis=0)))
+
+
+def _and_length(vectors: Floats) -> tuple[Floats, ...]:
+    """Return the components of vectors (3, m), and their lengths."""
+    return (*vectors, _length(vectors))

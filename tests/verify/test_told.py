@@ -1,0 +1,110 @@
+"""No number that a user is told can be another than what the motion does."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from des_cli import load_profile, pipeline
+from des_cli.results.reading import read_metrics
+from des_cli.verify.claim import Claim
+from des_cli.verify.told import check_told
+from des_cli.verify.verify import verify
+
+# Of a factor, of free joints, of body rates with a requested part that the joints lack.
+CASES = {
+    "scalar": ("cobra", ["time.step_s=0.05"]),
+    "free": ("cobra_felt", ["time.step_s=0.05"]),
+    "G": ("g_flight", []),
+}
+UNTOLD = {
+    "objective",  # by the cost, which has a check of its own
+    "acceleration_sign_changes",
+    "ok",
+}
+SECTIONS = ("fidelity", "coriolis", "felt", "limits")
+
+
+@pytest.fixture(scope="module", params=CASES)
+def claim(request: pytest.FixtureRequest) -> Claim:
+    """A claim with the metrics that were told of it."""
+    claims: list[Claim] = []
+    name, settings = CASES[request.param]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pipeline, "verify", lambda each: (claims.append(each), verify(each))[1])
+        pipeline.reduce_profile(load_profile(name, settings=settings))
+    (found,) = claims
+    return found
+
+
+def leaves(content: dict[str, Any], *path: str) -> Iterator[tuple[str, ...]]:
+    """Yield the path of every number."""
+    for key, value in content.items():
+        if key in UNTOLD:
+            continue
+        if isinstance(value, dict):
+            yield from leaves(value, *path, key)
+        elif isinstance(value, int | float):
+            yield (*path, key)
+
+
+def told(claim: Claim, path: tuple[str, ...], change: Any) -> set[str]:
+    """Change a number of the metrics, and return the keys of the checks that fail."""
+    assert claim.told is not None
+    content = copy.deepcopy(claim.told.mapping())
+    inner = content
+    for key in path[:-1]:
+        inner = inner[key]
+    inner[path[-1]] = change(inner[path[-1]])
+    return {check.key for check in check_told(claim, read_metrics(content)) if not check.ok}
+
+
+def off(value: float) -> float:
+    """A ten-millionth more, of what is felt."""
+    return value + 1e-7 * max(abs(value), 1e-3)
+
+
+def test_what_is_told_is_what_the_motion_does(claim: Claim) -> None:
+    assert claim.told is not None
+    checks = check_told(claim, claim.told)
+    assert [check.key for check in checks] == [
+        *("told.profile", "told.fidelity", "told.coriolis", "told.felt", "told.limits")
+    ]
+    assert all(check.value < 1e-11 for check in checks), checks
+
+
+def test_every_number_that_is_off_is_found(claim: Claim) -> None:
+    assert claim.told is not None
+    content = claim.told.mapping()
+    missed = []
+    count = 0
+    for section in SECTIONS:
+        for path in leaves(content[section], section):
+            count += 1
+            expected = {f"told.{section}"}
+            if told(claim, path, off) != expected:
+                missed.append(path)
+    assert missed == []
+    assert count > 150
+
+
+@pytest.mark.parametrize("value", [None, float("nan"), float("inf"), "0.1", True])
+def test_what_is_no_number_is_found(claim: Claim, value: object) -> None:
+    path = ("felt", "seat_angular_acceleration", "magnitude", "peak_after_rad_s2")
+    assert told(claim, path, lambda _: value) == {"told.felt"}
+
+
+def test_another_duration_is_found(claim: Claim) -> None:
+    assert told(claim, ("profile", "duration_s"), lambda value: 2 * value) == {"told.profile"}
+
+
+def test_the_worst_number_is_named(claim: Claim) -> None:
+    assert claim.told is not None
+    content = copy.deepcopy(claim.told.mapping())
+    content["felt"]["seat_g"]["gy"]["peak_after_g"] *= 1.01
+    content["felt"]["seat_g"]["gz"]["peak_after_g"] *= 1.001
+    (check,) = [each for each in check_told(claim, read_metrics(content)) if not each.ok]
+    assert "largest of seat_g.gy.peak_after" in str(check)
