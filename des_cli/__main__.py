@@ -2,7 +2,7 @@
 
 from typing import NoReturn
 
-from des_cli.cli.signals import die_at_once
+from des_cli.signals import die_at_once
 
 
 def main() -> NoReturn:

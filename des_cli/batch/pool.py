@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
@@ -11,7 +10,8 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from multiprocessing import get_context
 from typing import Any, TypeVar
 
-from des_cli.batch.worker import ASKS_TO_END, begin, do
+from des_cli.batch.worker import begin, do
+from des_cli.signals import undisturbed
 
 T = TypeVar("T")
 
@@ -60,21 +60,8 @@ class _Pool(ProcessPoolExecutor):
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **options: Any) -> Future[T]:
         """Have a task done; a worker may be started for it."""
-        with _unheard_signals():
+        with undisturbed():  # it hears signals as soon as it knows what to do with them
             return super().submit(do, fn, *args, **options)
-
-
-@contextmanager
-def _unheard_signals() -> Iterator[None]:
-    """Start processes that hear no signal before they are workers; here they wait."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, ASKS_TO_END)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager

@@ -13,8 +13,9 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from types import FrameType
 from typing import Any, NoReturn, TypeVar
+
+from des_cli.signals import disturbed, hear
 
 T = TypeVar("T")
 
@@ -23,11 +24,6 @@ GRACE_S = 1.0
 
 _SET_PARENT_DEATH_SIGNAL = 1
 """``PR_SET_PDEATHSIG`` of Linux's ``prctl``."""
-
-ASKS_TO_END = tuple(
-    getattr(signal, name) for name in ("SIGHUP", "SIGINT", "SIGTERM") if hasattr(signal, name)
-)
-"""What reaches a whole process group, workers included."""
 
 _at_work = False
 
@@ -42,12 +38,9 @@ def begin(parent: int, parent_pipe: Connection) -> None:
     parent_pipe : Connection
         Nothing ever comes through it but its end.
     """
-    for number in ASKS_TO_END:
-        if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _stop)
-    if hasattr(signal, "pthread_sigmask"):
-        # The parent starts workers with these blocked: until here they would mean a traceback.
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, ASKS_TO_END)
+    # The parent starts workers that hear nothing: until here it would mean a traceback.
+    hear(lambda: _at_work)
+    disturbed()
     _die_with(parent)
     threading.Thread(target=_await_end, args=(parent_pipe,), daemon=True).start()
 
@@ -62,14 +55,6 @@ def do(work: Callable[..., T], *args: Any) -> T:
         _leave()
     finally:
         _at_work = False
-
-
-def _stop(number: int, _: FrameType | None) -> None:
-    if not _at_work:
-        _leave()
-    for other in ASKS_TO_END:
-        signal.signal(other, signal.SIG_IGN)
-    raise KeyboardInterrupt
 
 
 def _leave() -> NoReturn:

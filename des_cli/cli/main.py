@@ -17,9 +17,9 @@ import click
 from des_cli import __version__
 from des_cli.cli.console import Console
 from des_cli.cli.options import color_option, verbosity_options
-from des_cli.cli.signals import stopping
 from des_cli.cli.terminal import give_up
 from des_cli.errors import ExitCode, Failure
+from des_cli.signals import stopping
 
 COMMANDS = ("reduce", "report", "sweep", "validate", "kinematics", "profiles", "machines", "schema")
 """In the order of ``--help``; each is the module and the command of that name."""

@@ -11,15 +11,15 @@ from __future__ import annotations
 import os
 import re
 import secrets
-import shutil
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from des_cli.errors import Complaint, FileAccessError
-from des_cli.runs_out.lock import hold, is_still, short_stem
+from des_cli.runs_out.lock import hold, is_still, remove_all, remove_unless_held, short_stem
 from des_cli.runs_out.plain_words import plain_words
+from des_cli.signals import undisturbed
 
 _TEMPORARY = re.compile(r"\..*\.partial-[0-9a-f]{8}", re.DOTALL)
 
@@ -123,21 +123,7 @@ def clear_leftovers(target: Path) -> None:
     with suppress(OSError):
         for path in list(target.parent.iterdir()):
             if path.name.startswith(begin) and is_temporary(path.name):
-                _remove_if_left(path)
-
-
-def _remove_if_left(path: Path) -> None:
-    """Remove a temporary that no process holds."""
-    if os.name == "nt":  # there nobody can tell
-        return
-    with suppress(OSError):
-        # neither through a link nor waiting for the other end of a pipe
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
-        try:
-            if hold(descriptor) and is_still(descriptor, path):
-                _remove_all(path)
-        finally:
-            os.close(descriptor)
+                remove_unless_held(path)
 
 
 def beside(target: Path) -> Path:
@@ -177,22 +163,20 @@ def _hold_new(target: Path, make: Callable[[Path], object], flags: int, stack: E
     """Make a temporary of a target that is held, and is removed when the stack is left."""
     while True:
         temporary = beside(target)
-        stack.callback(_remove_all, temporary)
-        make(temporary)
-        if os.name == "nt":  # there no folder can be opened, and no open file renamed
-            return temporary
-        descriptor = os.open(temporary, flags)
-        stack.callback(os.close, descriptor)
+        stack.callback(_put_away, temporary)
+        with undisturbed():
+            make(temporary)
+            if os.name == "nt":  # there no folder can be opened, and no open file renamed
+                return temporary
+            descriptor = os.open(temporary, flags)
+            stack.callback(os.close, descriptor)
         if _is_ours(descriptor, temporary):
             return temporary
 
 
-def _remove_all(path: Path) -> None:
-    with suppress(OSError):
-        if path.is_dir() and not path.is_symlink():
-            shutil.rmtree(path, ignore_errors=True)
-        else:
-            path.unlink()
+def _put_away(temporary: Path) -> None:
+    with undisturbed():
+        remove_all(temporary)
 
 
 def _is_ours(descriptor: int, path: Path) -> bool:

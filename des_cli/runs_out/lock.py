@@ -10,6 +10,7 @@ from __future__ import annotations
 import errno
 import hashlib
 import os
+import shutil
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -17,6 +18,7 @@ from pathlib import Path
 
 from des_cli.errors import Complaint, FileAccessError
 from des_cli.runs_out.plain_words import plain_words
+from des_cli.signals import undisturbed
 
 try:
     import fcntl
@@ -50,21 +52,22 @@ def locked(target: Path) -> Iterator[None]:
             yield
             return
     home = Path(os.path.realpath(target))
-    made = _make_parents(home, target)
+    path = home.parent / f".{short_stem(home.name)}.lock"
+    made: list[Path] = []
+    held: list[int] = []
     try:
-        descriptor, path = _take(home, target)
-        try:
-            yield
-        finally:
-            if path is not None:
-                # While it is still locked: nobody else holds it.
-                with suppress(OSError):
-                    path.unlink()
-            os.close(descriptor)
+        with undisturbed():
+            _make_parents(home, target, made)
+            _take(home, target, path, held)
+        yield
     finally:
-        for folder in made:
-            with suppress(OSError):
-                folder.rmdir()
+        with undisturbed():
+            for descriptor in held:
+                os.close(descriptor)
+            remove_unless_held(path)
+            for folder in made:
+                with suppress(OSError):
+                    folder.rmdir()
 
 
 def short_stem(name: str) -> str:
@@ -102,21 +105,41 @@ def is_still(descriptor: int, path: Path) -> bool:
         return False
 
 
-def _make_parents(home: Path, target: Path) -> list[Path]:
-    """Make the missing parents of a target; return them, the innermost first."""
-    missing = []
+def remove_unless_held(path: Path) -> None:
+    """Remove a file or folder that no process holds, and nobody needs any more."""
+    if os.name == "nt":  # there nobody can tell
+        return
+    with suppress(OSError):
+        # neither through a link nor waiting for the other end of a pipe
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        try:
+            if hold(descriptor) and is_still(descriptor, path):
+                remove_all(path)
+        finally:
+            os.close(descriptor)
+
+
+def remove_all(path: Path) -> None:
+    """Remove a file, or a folder with all that is in it, as far as that is possible."""
+    with suppress(OSError):
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink()
+
+
+def _make_parents(home: Path, target: Path, made: list[Path]) -> None:
+    """Make the missing parents of a target, and note them, the innermost first."""
     for parent in home.parents:
         if parent.exists():
             break
-        missing.append(parent)
+        made.append(parent)
     with plain_words(target, "cannot be written"):
         home.parent.mkdir(parents=True, exist_ok=True)
-    return missing
 
 
-def _take(home: Path, target: Path) -> tuple[int, Path | None]:
-    """Return the open lock of a target, and the lock's own file if it has one."""
-    path = home.parent / f".{short_stem(home.name)}.lock"
+def _take(home: Path, target: Path, path: Path, held: list[int]) -> None:
+    """Open and lock a target's lock file, and note its descriptor."""
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
     with plain_words(target, "cannot be written"):
         for _ in range(_TRIES):
@@ -125,7 +148,8 @@ def _take(home: Path, target: Path) -> tuple[int, Path | None]:
             except PermissionError:
                 if not home.is_dir():
                     raise
-                return _take_folder(home, target), None
+                _take_folder(home, target, held)
+                return
             except FileNotFoundError:
                 # Who made the parents too has just taken them away.
                 home.parent.mkdir(parents=True, exist_ok=True)
@@ -135,21 +159,22 @@ def _take(home: Path, target: Path) -> tuple[int, Path | None]:
                 os.close(descriptor)
                 raise _refused(target, other)
             if is_still(descriptor, path):
+                held.append(descriptor)
                 with suppress(OSError):  # a full disk: then it has no number to tell
                     os.ftruncate(descriptor, 0)
                     os.write(descriptor, b"%d\n" % os.getpid())
-                return descriptor, path
+                return
             os.close(descriptor)
     raise _refused(target, "")
 
 
-def _take_folder(home: Path, target: Path) -> int:
+def _take_folder(home: Path, target: Path, held: list[int]) -> None:
     """Lock a folder itself, beside which nothing may be written: a mounted one, say."""
     descriptor = os.open(home, os.O_RDONLY)
     if hold(descriptor) is False:
         os.close(descriptor)
         raise _refused(target, "")
-    return descriptor
+    held.append(descriptor)
 
 
 def _owner(descriptor: int) -> str:

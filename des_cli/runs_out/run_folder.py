@@ -40,6 +40,7 @@ from des_cli.runs_out.tables import (
     trajectory_columns,
     trajectory_names,
 )
+from des_cli.signals import undisturbed
 
 COMMANDS = "commands.csv"
 TRAJECTORY = "trajectory.parquet"
@@ -319,12 +320,13 @@ def _fill(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], 
             earlier += [entry["name"] for entry in read_manifest(target)["files"]]
         earlier += [name for name in outputs if name not in earlier]
         try:
-            _move(target, aside, _inside(target, earlier))
-            *files, manifest = outputs
-            _move(building, target, files)
-            for inner in {(target / name).parent for name in files}:
-                atomic.sync_folder(inner)
-            _move(building, target, [manifest])
+            with undisturbed():
+                _move(target, aside, _inside(target, earlier))
+                *files, manifest = outputs
+                _move(building, target, files)
+                for inner in {(target / name).parent for name in files}:
+                    atomic.sync_folder(inner)
+                _move(building, target, [manifest])
         except BaseException:
             _remove(target, [name for name in outputs if not (building / name).exists()])
             _move(aside, target, reversed(earlier))
