@@ -1,6 +1,18 @@
-"""Let ``python -m des_cli`` be the command ``des-coriolis``."""
+"""The command ``des-coriolis``, and ``python -m des_cli``."""
 
-from des_cli.cli.main import main
+from typing import NoReturn
+
+from des_cli.signals import die_at_once
+
+
+def main() -> NoReturn:
+    """Run the command line of this process."""
+    die_at_once()
+    # Imported here: Ctrl-C while click and its like are imported is no traceback.
+    from des_cli.cli.main import main as run
+
+    run()
+
 
 if __name__ == "__main__":
     main()

@@ -22,8 +22,10 @@ class ExitCode(IntEnum):
     NO_SOLUTION = 4
     NOT_RELEASED = 5
     BUG = 70
+    HUNG_UP = 129
     INTERRUPTED = 130
     READER_GONE = 141
+    TERMINATED = 143
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +109,29 @@ class NotReleasedError(DesError):
     exit_code = ExitCode.NOT_RELEASED
 
 
+class Stopped(KeyboardInterrupt):
+    """A signal ends the process: whatever lets Ctrl-C pass lets it pass.
+
+    Parameters
+    ----------
+    exit_code : ExitCode
+        128 and the number of the signal.
+    """
+
+    def __init__(self, exit_code: ExitCode) -> None:
+        self.exit_code = exit_code
+        super().__init__()
+
+
+_STOPPED_WORDS = {
+    ExitCode.HUNG_UP: ("hung up",),
+    ExitCode.INTERRUPTED: ("interrupted",),
+    ExitCode.TERMINATED: ("terminated",),
+    # Nobody is left who reads: no words.
+    ExitCode.READER_GONE: (),
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Failure:
     """The end of something that did not end well.
@@ -137,11 +162,12 @@ class Failure:
         match error:
             case DesError():
                 return cls(error.exit_code, tuple(str(complaint) for complaint in error.complaints))
+            case Stopped():
+                return cls(error.exit_code, _STOPPED_WORDS[error.exit_code])
             case KeyboardInterrupt():
-                return cls(ExitCode.INTERRUPTED, ("interrupted",))
+                return cls(ExitCode.INTERRUPTED, _STOPPED_WORDS[ExitCode.INTERRUPTED])
             case BrokenPipeError():
-                # Nobody is left who reads: no words.
-                return cls(ExitCode.READER_GONE, ())
+                return cls(ExitCode.READER_GONE, _STOPPED_WORDS[ExitCode.READER_GONE])
             case OSError():
                 return cls(ExitCode.FILE, (_operating_system_line(error),))
             case MemoryError():

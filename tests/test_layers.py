@@ -17,6 +17,7 @@ LAYERS = (
     ("reduction",),
     ("verify", "results"),
     ("pipeline",),
+    ("signals",),
     ("profiles_in", "runs_out", "show"),
     ("release",),
     ("batch", "tradeoff"),

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from des_cli.batch.earlier import settle, stands, unnamed
 from des_cli.batch.job import Job, JobResult, Output
-from des_cli.batch.source import STANDARD_STREAM, load_source
-from des_cli.errors import Complaint, DesError, ExitCode, Failure, FileAccessError
+from des_cli.batch.source import STANDARD_STREAM, load_source, name_of_source
+from des_cli.errors import Complaint, DesError, Failure, FileAccessError
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.notice import Notice
 from des_cli.model.stage import OnStage, untold
+from des_cli.runs_out.lock import locked
 
 # What needs numpy is imported when a job runs, as in `source`.
 if TYPE_CHECKING:
     from des_cli.model.profile import Profile
     from des_cli.model.run import Run
     from des_cli.model.solution import Iteration
-
-# With these a job leaves no command table under its name, not even an older one.
-_NO_TABLE = (ExitCode.PROFILE, ExitCode.NO_SOLUTION, ExitCode.NOT_RELEASED)
 
 
 def run_job(
@@ -44,38 +43,79 @@ def run_job(
     on_stage : callable, optional
         Called with a few words for what is done next.
     """
-    result = _run_job(job, on_iteration, on_stage)
-    output = job.output
-    if result.exit_code not in _NO_TABLE or not output.overwrite or output.dry_run:
-        return result
-    try:
-        return replace(result, notices=(*result.notices, *_withdraw(output, result.name)))
-    except (DesError, OSError) as error:
-        return replace(result, complaints=(*result.complaints, *Failure.of(error).lines))
+    source, output = job.source, job.output
+    read = _read(job, on_stage)
+    if isinstance(read, JobResult):
+        return replace(read, notices=(*read.notices, *_earlier(_settle_unread(job, read))))
+    target = output.destination(read.name)
 
-
-def _run_job(
-    job: Job,
-    on_iteration: Callable[[Iteration], None] | None,
-    on_stage: OnStage,
-) -> JobResult:
-    name, source, output = "", job.source, job.output
-    try:
-        on_stage(f"reading {source.name}")
-        profile = load_source(source)
-        name = profile.name
-        _require_consistent(profile)
-        target = output.destination(name)
-        if output.resume and _holds_run_of(target, profile):
-            return JobResult(source.name, name, written=str(target), state="kept")
-        _refuse_existing(output, target)
+    def whole() -> JobResult:
+        if output.resume and _holds_run_of(target, read):
+            return JobResult(source.name, read.name, written=str(target), state="kept")
+        _refuse_missing_folder(output, target)
         if output.dry_run:
-            return JobResult(source.name, name, written=str(target), state="planned")
-        return _reduce_and_write(job, profile, target, on_iteration, on_stage)
+            _refuse_existing(output, target)
+            return JobResult(source.name, read.name, written=str(target), state="planned")
+        if output.out == STANDARD_STREAM:
+            return _reduce_and_write(job, read, target, on_iteration, on_stage)
+        with locked(target):
+            _refuse_existing(output, target)
+            result = _result_of(
+                job, read.name, _reduce_and_write, job, read, target, on_iteration, on_stage
+            )
+            return replace(
+                result, notices=(*result.notices, *_earlier(settle(output, target, result)))
+            )
+
+    return _result_of(job, read.name, whole)
+
+
+def _earlier(sentences: Iterable[str]) -> tuple[Notice, ...]:
+    """Return what became of an earlier output as notices."""
+    return tuple(Notice("earlier", sentence) for sentence in sentences)
+
+
+def _result_of(job: Job, name: str, do: Callable[..., JobResult], *args: Any) -> JobResult:
+    """Make a result of whatever becomes of a step of a job."""
+    try:
+        return do(*args)
     except BrokenPipeError:
         raise
     except Exception as error:
         return JobResult.failed(job, error, name)
+
+
+def _read(job: Job, on_stage: OnStage) -> Profile | JobResult:
+    """Return the profile of a job, or the result of one that cannot be had."""
+    name = ""
+    try:
+        on_stage(f"reading {job.source.name}")
+        profile = load_source(job.source)
+        name = profile.name
+        _require_consistent(profile)
+    except BrokenPipeError:
+        raise
+    except Exception as error:
+        return JobResult.failed(job, error, name)
+    return profile
+
+
+def _settle_unread(job: Job, result: JobResult) -> tuple[str, ...]:
+    """Settle what stands where the output of a profile that cannot be read would go."""
+    output = job.output
+    if output.dry_run or output.out == STANDARD_STREAM:
+        return ()
+    name = result.name or (name_of_source(job.source) if output.out_is_parent else "")
+    if output.out_is_parent and not name:
+        return unnamed(output, result)
+    target = output.destination(name)
+    if not stands(output, target):
+        return ()
+    try:
+        with locked(target):
+            return settle(output, target, result)
+    except DesError as error:
+        return Failure.of(error).lines
 
 
 def _require_consistent(profile: Profile) -> None:
@@ -139,45 +179,29 @@ def _write(job: Job, run: Run, target: Path) -> bytes | None:
     return None
 
 
+def _refuse_missing_folder(output: Output, target: Path) -> None:
+    """Refuse before solving a table whose folder is missing; that of a run is made."""
+    if output.table_format is None or output.out == STANDARD_STREAM or target.parent.is_dir():
+        return
+    raise FileAccessError([Complaint(str(target), "cannot be written: the folder does not exist")])
+
+
 def _refuse_existing(output: Output, target: Path) -> None:
     """Refuse before solving what would be refused when writing."""
-    if output.out == STANDARD_STREAM:
+    if output.out == STANDARD_STREAM or output.overwrite:
         return
-    if output.table_format is not None:
-        if not target.parent.is_dir():
-            what = "cannot be written: the folder does not exist"
-            raise FileAccessError([Complaint(str(target), what)])
-        taken = target.is_file()
+    if output.table_format is None:
+        from des_cli.runs_out.run_folder import is_free
+
+        taken = not is_free(target)
     else:
-        taken = target.is_file() or (target.is_dir() and any(target.iterdir()))
-    if not taken or output.overwrite:
+        taken = target.is_file()
+    if not taken:
         return
     what = "exists; --overwrite replaces it"
     if output.resume:
         what = "is not a finished run of this very profile; --overwrite replaces it"
     raise FileAccessError([Complaint(str(target), what)])
-
-
-def _withdraw(output: Output, name: str) -> tuple[Notice, ...]:
-    """Remove the earlier output that a failed job was to replace.
-
-    Otherwise a console would find, under the name that it asked for, commands
-    that are not this profile's.
-    """
-    if output.out == STANDARD_STREAM or (output.out_is_parent and not name):
-        return ()
-    from des_cli.runs_out.manifest import is_run
-    from des_cli.runs_out.run_folder import discard_run
-
-    target = output.destination(name)
-    if output.table_format is not None and target.is_file():
-        target.unlink(missing_ok=True)
-    elif output.table_format is None and is_run(target):
-        discard_run(target)
-    else:
-        return ()
-    said = f"withdrew the earlier {target}: it is not what this profile asks for"
-    return (Notice("withdrawn", said),)
 
 
 def _holds_run_of(folder: Path, profile: Profile) -> bool:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
-from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from multiprocessing import get_context
+from typing import Any, TypeVar
+
+from des_cli.batch.worker import begin, do
+from des_cli.signals import undisturbed
+
+T = TypeVar("T")
 
 # What a BLAS reads when it is loaded: one name for each that numpy and scipy are built with.
 _THREAD_VARIABLES = (
@@ -24,6 +29,9 @@ _THREAD_VARIABLES = (
 def local_executor(workers: int) -> Iterator[Executor | None]:
     """Offer a pool of processes on this machine, or None where one worker is enough.
 
+    Whatever ends this process or leaves the context ends the workers too. An exception
+    does not wait for the tasks that have begun: they put away what they were building.
+
     Parameters
     ----------
     workers : int
@@ -34,18 +42,26 @@ def local_executor(workers: int) -> Iterator[Executor | None]:
         if count <= 1:
             yield None
             return
-        # Not forked: numpy's threads do not survive a fork. The initializer
-        # lets Ctrl-C, which reaches every process of the terminal, end a
-        # worker without a traceback.
-        pool = ProcessPoolExecutor(count, get_context("spawn"), initializer=_die_on_interrupt)
-        try:
-            yield pool
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+        context = get_context("spawn")  # not forked: numpy's threads do not survive a fork
+        theirs, ours = context.Pipe(duplex=False)
+        with theirs, ours:
+            pool = _Pool(count, context, initializer=begin, initargs=(os.getpid(), theirs))
+            try:
+                yield pool
+            except BaseException:
+                ours.close()
+                raise
+            finally:
+                pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _die_on_interrupt() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+class _Pool(ProcessPoolExecutor):
+    """Processes that stop their task when they are told to."""
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **options: Any) -> Future[T]:
+        """Have a task done; a worker may be started for it."""
+        with undisturbed():  # it hears signals as soon as it knows what to do with them
+            return super().submit(do, fn, *args, **options)
 
 
 @contextmanager

@@ -55,6 +55,13 @@ def load_source(source: Source) -> Profile:
     return load_profile(source.name, part=source.part, **_how(source))
 
 
+def name_of_source(source: Source) -> str:
+    """Return the name of a profile that is rejected; empty where it cannot be told."""
+    from des_cli.profiles_in.profile_name import find_name
+
+    return find_name(source.name, settings=source.settings, stdin=source.stdin)
+
+
 def load_source_variants(
     source: Source, variants: Sequence[Sequence[AnySetting]]
 ) -> list[Profile | DesError]:

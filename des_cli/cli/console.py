@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+import secrets
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from io import StringIO
 from typing import TYPE_CHECKING
 
 import click
 
 from des_cli.cli.status_line import StatusLine
+from des_cli.cli.terminal import give_up, printable, without_broken_pipe_signal
 from des_cli.errors import ExitCode, Failure
 
 if TYPE_CHECKING:
@@ -45,6 +48,8 @@ class Console:
         self.verbosity = NORMAL
         self.color = False
         self._log_open = False
+        # Stands for the escape character of our own colors; nobody else can know it.
+        self._escape = f"\0{secrets.token_hex(8)}\0"
         self._line = StatusLine(None)
         self.choose_color("auto")
 
@@ -58,8 +63,12 @@ class Console:
             self.color = choice == "always"
 
     def style(self, text: str, style: str) -> str:
-        """Return the text in a style of the table, or as it is without color."""
-        return click.style(text, **_STYLES[style]) if self.color else text  # type: ignore[arg-type]
+        """Return the text in a style of the table, for this console to print."""
+        if not self.color:
+            return text
+        codes = click.style("\0", **_STYLES[style]).split("\0")  # type: ignore[arg-type]
+        before, after = (code.replace("\x1b", self._escape) for code in codes)
+        return before + text + after
 
     def say(self, text: str) -> None:
         """Print unless quiet."""
@@ -71,9 +80,22 @@ class Console:
         for line in lines:
             self._echo(self.style(line, style))
 
-    def _echo(self, text: str, *, nl: bool = True) -> None:
-        with self.aside():
-            click.echo(text, err=True, color=self.color, nl=nl)
+    def usage(self, error: click.ClickException) -> None:
+        """Print what is wrong with a command line."""
+        words = StringIO()
+        error.show(words)
+        text = words.getvalue().replace(error.message, printable(error.message))
+        for line in text.splitlines():
+            self._echo(line.expandtabs(4))
+
+    def _echo(self, text: str) -> None:
+        """Print a line, the one way to stderr; a lost word is no reason to end otherwise."""
+        line = "\x1b".join(map(printable, text.split(self._escape)))
+        try:
+            with self.aside(), without_broken_pipe_signal():
+                click.echo(line, err=True, color=self.color)
+        except (OSError, ValueError):
+            give_up(sys.stderr)
 
     @contextmanager
     def working(self, total: int = 1, noun: str = "profiles") -> Iterator[StatusLine]:
@@ -110,7 +132,8 @@ class Console:
         lines = failure.lines
         if failure.exit_code == ExitCode.BUG:
             if self.verbosity >= DEBUG or os.environ.get(DEBUG_VARIABLE):
-                self._echo(failure.traceback, nl=False)
+                for line in failure.traceback.splitlines():
+                    self._echo(line)
             else:
                 lines = tuple(f"{line} ({DEBUG_VARIABLE}=1 prints where)" for line in lines)
         self.warn(lines, "error")

@@ -7,10 +7,8 @@ exit code.
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
-from contextlib import suppress
 from importlib import import_module
 from typing import Any, NoReturn
 
@@ -19,7 +17,9 @@ import click
 from des_cli import __version__
 from des_cli.cli.console import Console
 from des_cli.cli.options import color_option, verbosity_options
+from des_cli.cli.terminal import give_up
 from des_cli.errors import ExitCode, Failure
+from des_cli.signals import stopping
 
 COMMANDS = (
     "reduce",
@@ -75,7 +75,7 @@ class Program(click.Group):
         except click.exceptions.Exit as end:
             code = end.exit_code
         except click.ClickException as error:
-            error.show()
+            console.usage(error)
             code = error.exit_code
         except click.Abort:
             code = _end(console, KeyboardInterrupt())
@@ -92,19 +92,10 @@ class Program(click.Group):
 def _end(console: Console, error: BaseException) -> ExitCode:
     """Print how an exception ends, and return its exit code."""
     failure = Failure.of(error)
-    with suppress(OSError):
-        console.failure(failure)
-    if isinstance(error, OSError):
-        _discard_stdout()
+    console.failure(failure)
+    if isinstance(error, OSError) or failure.exit_code == ExitCode.READER_GONE:
+        give_up(sys.stdout)
     return failure.exit_code
-
-
-def _discard_stdout() -> None:
-    """Keep the interpreter from flushing, and failing, once more at its exit."""
-    with suppress(OSError, ValueError, AttributeError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
-        os.close(nowhere)
 
 
 @click.command(
@@ -129,5 +120,10 @@ def program() -> None:
 
 
 def main() -> NoReturn:
-    """Run the command line of this process."""
-    program.main()
+    """Run the command line of this process, until it is done or a signal ends it."""
+    try:
+        with stopping():
+            program.main()
+    except KeyboardInterrupt as error:
+        # Between two steps of the ending itself; what is to be put away is.
+        sys.exit(int(Failure.of(error).exit_code))

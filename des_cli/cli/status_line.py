@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TextIO
 
+from des_cli.cli.terminal import printable
+
 if TYPE_CHECKING:
     from types import TracebackType
 
@@ -120,7 +122,7 @@ class StatusLine:
         if self._stream is None or now - self._began < DELAY_S or now - self._drawn < INTERVAL_S:
             return
         columns = _columns(self._stream)
-        self._write(_ERASE + self._text(now)[: columns - 1])
+        self._write(_ERASE + printable(self._text(now))[: columns - 1])
         self._shown, self._drawn = True, now
 
     def _text(self, now: float) -> str:

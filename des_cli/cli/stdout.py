@@ -6,6 +6,7 @@ import sys
 
 import click
 
+from des_cli.cli.terminal import printable
 from des_cli.errors import Complaint, FileAccessError
 
 
@@ -28,6 +29,11 @@ def write_data(data: bytes | str) -> None:
         taken = stream.write(rest)
         rest = rest[len(rest) if taken is None else taken :]
     stream.flush()
+
+
+def write_line(text: str) -> None:
+    """Write words for a person on a line, as `write_data` does."""
+    write_data(printable(text) + "\n")
 
 
 def refuse_binary_on_terminal(table_format: str | None) -> None:

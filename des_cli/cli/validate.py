@@ -22,7 +22,7 @@ from des_cli.cli.source_options import (
     setting_options,
     source_of,
 )
-from des_cli.cli.stdout import write_data
+from des_cli.cli.stdout import write_line
 from des_cli.errors import DesError, ExitCode, Failure
 from des_cli.profiles_in.setting import AnySetting
 
@@ -107,7 +107,7 @@ def validate(
 
 def _write(console: Console, line: str) -> None:
     with console.aside():
-        write_data(line + "\n")
+        write_line(line)
 
 
 def understood(source: str, profile: Profile) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from des_cli.cli.console import Console
 from des_cli.cli.options import fail_on_option, text_or_json_option, verbosity_options
 from des_cli.cli.source_options import machine_option, read_stdin
 from des_cli.cli.state_options import in_si, state_options
-from des_cli.cli.stdout import write_data
+from des_cli.cli.stdout import write_line
 from des_cli.errors import DesError, ExitCode, Failure
 
 if TYPE_CHECKING:
@@ -190,4 +190,4 @@ def _facts(verdict: Verdict, code: ExitCode) -> dict[str, Any]:
 
 def _write(console: Console, line: str) -> None:
     with console.aside():
-        write_data(line + "\n")
+        write_line(line)

@@ -23,7 +23,7 @@ NoticeName: TypeAlias = Literal[
     "replaced",
     "uncoupled",
     "short",
-    "withdrawn",
+    "earlier",
 ]
 """What a notice is called, the same in every version."""
 

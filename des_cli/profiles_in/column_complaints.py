@@ -28,8 +28,12 @@ _HOW_TO_NAME = "name those to read with --column NAME=HEADER"
 def nothing_to_fly(header: Header) -> str:
     """Say that a file has no column of any kind of commands."""
     kinds = [f"{kind.words} ({kind.example})" for kind in KINDS]
+    neither = f"has neither {' nor '.join(kinds)}"
+    if len(header.names) < 2:
+        # No table, perhaps a file that nobody is to read: its text is not repeated.
+        return f"{neither}; it has one column: is it a table? --separator says what divides columns"
     there = f"there are {some([name for name in header.names if name])}"
-    return f"has neither {' nor '.join(kinds)}; {there}; {_HOW_TO_NAME}"
+    return f"{neither}; {there}; {_HOW_TO_NAME}"
 
 
 def several_kinds(kinds: Sequence[Kind], found: Sequence[Column]) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from des_cli.profiles_in.findings import Findings, bounded
 from des_cli.profiles_in.gaps import GapHandling
 from des_cli.profiles_in.profile_csv import parse_samples
 from des_cli.profiles_in.profile_file import ProfileFile
+from des_cli.profiles_in.profile_name import name_of_file
 from des_cli.profiles_in.profile_yaml import (
     Commands,
     Reading,
@@ -130,7 +130,7 @@ def parse_file(
     if gaps.part is not None:
         digest.update(f"part {gaps.part}".encode())
     reading = Reading(label, folder, digest, gaps=gaps, remarks=[*remarks])
-    name = _safe_name(path.stem if path else "stdin")
+    name = name_of_file(path)
     try:
         if file.is_yaml:
             _refuse_table_options(label, columns, written)
@@ -154,11 +154,6 @@ def _refuse_table_options(
         complaints.append(Complaint(label, what))
     if complaints:
         raise UsageError(complaints)
-
-
-def _safe_name(stem: str) -> str:
-    """Make a name that a folder may have."""
-    return re.sub(r"[^\w .,+()-]", "_", stem).strip(" .")[:100] or "profile"
 
 
 def _load_csv(

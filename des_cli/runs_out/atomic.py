@@ -2,42 +2,26 @@
 
 Whatever happens on the way (an exception, Ctrl-C, a full disk, a lost power
 line), nothing half-written stands under the name: what is left behind, if the
-process is killed outright, is called ``.NAME.partial-XXXXXXXX``.
+process is killed outright, is called ``.NAME.partial-XXXXXXXX``. While it is built it is
+locked, so that the next who builds something of that name knows what nobody builds any more.
 """
 
 from __future__ import annotations
 
-import errno
 import os
 import re
 import secrets
-import shutil
 import stat
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from des_cli.errors import Complaint, FileAccessError
-
-# A name has at most 255 bytes; 40 characters of four bytes leave room for the
-# rest of the temporary's name.
-_STEM_CHARACTERS = 40
+from des_cli.runs_out.lock import hold, is_still, remove_all, remove_unless_held, short_stem
+from des_cli.runs_out.plain_words import plain_words
+from des_cli.signals import undisturbed
 
 _TEMPORARY = re.compile(r"\..*\.partial-[0-9a-f]{8}", re.DOTALL)
-
-_PLAIN_WORDS = {
-    errno.ENOENT: "no such file or folder",
-    errno.ENOTDIR: "a part of the path is a file, not a folder",
-    errno.EACCES: "permission denied",
-    errno.EPERM: "permission denied",
-    errno.EROFS: "the file system is read-only",
-    errno.ENOSPC: "no space left on the device",
-    errno.EISDIR: "a folder of that name exists",
-    errno.ENOTEMPTY: "a folder of that name exists and is not empty",
-    errno.EEXIST: "something of that name exists",
-    errno.ENAMETOOLONG: "the name is too long",
-    errno.ELOOP: "a symbolic link leads back to itself",
-}
 
 
 def write_file(
@@ -86,25 +70,27 @@ def write_file(
         if existing is not None and not overwrite:
             raise exists(shown)
         target = Path(os.path.realpath(shown))
-        temporary = beside(target)
-        try:
-            _write_through(temporary, data, None if existing is None else stat.S_IMODE(existing))
+        clear_leftovers(target)
+        with ExitStack() as stack:
+            temporary = _hold_new(target, _create, os.O_RDONLY, stack)
+            _to_disk(temporary, data)
             accept(temporary.read_bytes())
+            if existing is not None:
+                with suppress(OSError):
+                    temporary.chmod(stat.S_IMODE(existing))
             if overwrite:
                 os.replace(temporary, target)
             else:
                 _name_once(temporary, target, shown)
             sync_folder(target.parent)
-        finally:
-            with suppress(OSError):
-                temporary.unlink()
     return shown
 
 
 def write_through(path: Path, data: bytes) -> None:
     """Write a new file inside a folder that is itself still being built."""
     with plain_words(path, "cannot be written"):
-        _write_through(path, data, None)
+        _create(path)
+        _to_disk(path, data)
 
 
 @contextmanager
@@ -123,18 +109,26 @@ def new_folder(parent: Path, name: str) -> Iterator[Path]:
     Path
         ``parent/.NAME.partial-XXXXXXXX``; rename it, or move its files away.
     """
-    folder = beside(parent / name)
-    try:
-        with plain_words(folder, "cannot be created"):
-            folder.mkdir()
+    target = parent / name
+    clear_leftovers(target)
+    with ExitStack() as stack:
+        with plain_words(target, "cannot be written"):
+            folder = _hold_new(target, Path.mkdir, os.O_RDONLY, stack)
         yield folder
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+
+
+def clear_leftovers(target: Path) -> None:
+    """Remove what a killed process left of building something of this name."""
+    begin = f".{short_stem(target.name)}.partial-"
+    with suppress(OSError):
+        for path in list(target.parent.iterdir()):
+            if path.name.startswith(begin) and is_temporary(path.name):
+                remove_unless_held(path)
 
 
 def beside(target: Path) -> Path:
     """Name a temporary in the target's folder, hidden and not used by anyone else."""
-    return target.parent / f".{target.name[:_STEM_CHARACTERS]}.partial-{secrets.token_hex(4)}"
+    return target.parent / f".{short_stem(target.name)}.partial-{secrets.token_hex(4)}"
 
 
 def is_temporary(name: str) -> bool:
@@ -158,40 +152,6 @@ def exists(path: Path) -> FileAccessError:
     return FileAccessError([Complaint(str(path), "exists; --overwrite replaces it")])
 
 
-@contextmanager
-def plain_words(path: Path, failed: str, *, missing: str | None = None) -> Iterator[None]:
-    """Turn the operating system's errors into one plain sentence.
-
-    Parameters
-    ----------
-    path : Path
-        What the sentence is about.
-    failed : str
-        Such as ``cannot be written``.
-    missing : str, optional
-        What it means here that something is not found.
-
-    Raises
-    ------
-    FileAccessError
-        In place of an OSError, and of the ValueError of a path that no file
-        can have.
-    BrokenPipeError
-        As it is: that a reader went away is no fault of the file.
-    """
-    try:
-        yield
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        if isinstance(error, FileNotFoundError) and missing is not None:
-            raise FileAccessError([Complaint(str(path), f"{failed}: {missing}")]) from error
-        words = _PLAIN_WORDS.get(error.errno or 0, error.strerror or type(error).__name__)
-        raise FileAccessError([Complaint(str(path), f"{failed}: {words}")]) from error
-    except ValueError as error:
-        raise FileAccessError([Complaint(repr(str(path)), f"{failed}: {error}")]) from error
-
-
 def _mode(path: Path) -> int | None:
     try:
         return path.stat().st_mode
@@ -199,17 +159,41 @@ def _mode(path: Path) -> int | None:
         return None
 
 
-def _write_through(path: Path, data: bytes, mode: int | None) -> None:
-    """Create a file with the permissions that the umask leaves, or the given ones."""
-    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-    descriptor = os.open(path, flags, 0o666)
-    with os.fdopen(descriptor, "wb") as stream:
-        if mode is not None:
-            with suppress(OSError):
-                path.chmod(mode)
+def _hold_new(target: Path, make: Callable[[Path], object], flags: int, stack: ExitStack) -> Path:
+    """Make a temporary of a target that is held, and is removed when the stack is left."""
+    while True:
+        temporary = beside(target)
+        stack.callback(_put_away, temporary)
+        with undisturbed():
+            make(temporary)
+            if os.name == "nt":  # there no folder can be opened, and no open file renamed
+                return temporary
+            descriptor = os.open(temporary, flags)
+            stack.callback(os.close, descriptor)
+        if _is_ours(descriptor, temporary):
+            return temporary
+
+
+def _put_away(temporary: Path) -> None:
+    with undisturbed():
+        remove_all(temporary)
+
+
+def _is_ours(descriptor: int, path: Path) -> bool:
+    # Before it was held, someone who clears leftovers may have taken it for one.
+    return hold(descriptor) is not False and is_still(descriptor, path)
+
+
+def _create(path: Path) -> None:
+    """Create an empty file, with the permissions that the umask leaves."""
+    os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+
+
+def _to_disk(path: Path, data: bytes) -> None:
+    with open(path, "r+b") as stream:
         stream.write(data)
         stream.flush()
-        os.fsync(descriptor)
+        os.fsync(stream.fileno())
 
 
 def _name_once(temporary: Path, target: Path, shown: Path) -> None:

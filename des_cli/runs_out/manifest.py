@@ -7,6 +7,7 @@ import json
 import math
 import os
 import re
+import stat
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -17,12 +18,14 @@ from des_cli import __version__
 from des_cli.errors import Complaint, FileAccessError
 from des_cli.model.run import Run
 from des_cli.profiles_in.machine_yaml import machine_mapping
-from des_cli.runs_out import atomic
+from des_cli.runs_out.atomic import is_temporary
 from des_cli.runs_out.blas import blas_kernels
+from des_cli.runs_out.plain_words import plain_words
 
 RUN_FORMAT = "des-coriolis/run/2"
 UNSEALED_FORMAT = "des-coriolis/run/1"
 """Of earlier versions: without a seal, and without the machine."""
+
 
 MANIFEST = "manifest.json"
 
@@ -81,7 +84,7 @@ def is_run(folder: str | os.PathLike[str]) -> bool:
 
     A folder in which a killed process was still building one does not.
     """
-    if atomic.is_temporary(Path(folder).name):
+    if is_temporary(Path(folder).name):
         return False
     try:
         read_manifest(folder)
@@ -99,7 +102,7 @@ def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
         If there is none, or it is not one of this format; with all complaints.
     """
     path = Path(folder) / MANIFEST
-    with atomic.plain_words(path, "cannot be read"):
+    with plain_words(path, "cannot be read"):
         if not path.exists():
             raise FileAccessError([Complaint(str(folder), f"is not a run: it has no {MANIFEST}")])
     data = read_bytes(path)
@@ -111,8 +114,14 @@ def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def read_bytes(path: Path) -> bytes:
-    """Return the bytes of a file, or raise FileAccessError."""
-    with atomic.plain_words(path, "cannot be read"):
+    """Return the bytes of a regular file, or raise FileAccessError.
+
+    In the folder of a run from somebody else a pipe would be waited for, and a device
+    read without end.
+    """
+    with plain_words(path, "cannot be read"):
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise FileAccessError([Complaint(str(path), "cannot be read: it is not a file")])
         return path.read_bytes()
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import stat
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -21,6 +22,7 @@ from des_cli.errors import Complaint, FileAccessError
 from des_cli.model.arrays import Floats
 from des_cli.model.run import Run
 from des_cli.runs_out import atomic
+from des_cli.runs_out.exchange import exchange
 from des_cli.runs_out.manifest import (
     MANIFEST,
     encode_json,
@@ -30,6 +32,7 @@ from des_cli.runs_out.manifest import (
     read_bytes,
     read_manifest,
 )
+from des_cli.runs_out.plain_words import plain_words
 from des_cli.runs_out.run_profile import encode_run_profile
 from des_cli.runs_out.tables import (
     command_columns,
@@ -37,6 +40,7 @@ from des_cli.runs_out.tables import (
     trajectory_columns,
     trajectory_names,
 )
+from des_cli.signals import undisturbed
 
 COMMANDS = "commands.csv"
 TRAJECTORY = "trajectory.parquet"
@@ -82,7 +86,8 @@ def write_run(
     """Write the outputs of a run into its folder.
 
     Everything is built aside first. A folder that does not exist yet appears
-    whole, in one step. Into one that does, the files are moved with the
+    whole, in one step, and one that holds nothing but an earlier run is exchanged in one
+    step where the system can. Into another the files are moved with the
     manifest last, and files that are not the run's stay untouched.
 
     Parameters
@@ -116,10 +121,11 @@ def write_run(
     _require_free(target, overwrite)
     outputs = _outputs(run, plots)
     outputs[MANIFEST] = encode_manifest(run, outputs)
-    if target.is_dir():
-        _fill(target, outputs, accept)
-    else:
+    if not target.is_dir():
         _appear(target, outputs, accept)
+    elif not (_may_be_exchanged(target) and _exchange(target, outputs, accept)):
+        _require_own_places(target, outputs)
+        _fill(target, outputs, accept)
     return tuple(target / name for name in outputs)
 
 
@@ -187,22 +193,43 @@ def discard_run(folder: str | os.PathLike[str]) -> None:
         _remove(home, names)
 
 
+def is_free(target: Path) -> bool:
+    """Tell whether nothing stands where a run is to be; leftovers of a killed one do not count."""
+    with plain_words(target, "cannot be written"):
+        if not target.exists():
+            return True
+        return target.is_dir() and all(atomic.is_temporary(path.name) for path in target.iterdir())
+
+
 def _require_free(target: Path, overwrite: bool) -> None:
-    with atomic.plain_words(target, "cannot be written"):
-        if not target.exists() or (overwrite and target.is_dir()):
-            return
-        if not target.is_dir():
-            raise FileAccessError(
-                [Complaint(str(target), "is a file; a run needs a folder, name another")]
-            )
-        # What a killed process left behind is nobody's work.
-        if all(atomic.is_temporary(path.name) for path in target.iterdir()):
-            return
-    if (target / MANIFEST).exists():
+    if (overwrite and target.is_dir()) or is_free(target):
+        return
+    if not target.is_dir():
+        what = "is a file; a run needs a folder, name another"
+    elif (target / MANIFEST).exists():
         what = "already holds a run; --overwrite replaces it"
     else:
         what = "is not empty and holds no run; name another folder, or --overwrite to write into it"
     raise FileAccessError([Complaint(str(target), what)])
+
+
+def _require_own_places(target: Path, outputs: Iterable[str]) -> None:
+    """Refuse to write through a link out of the folder, or in the place of a folder."""
+    folders = {(target / name).parent for name in outputs} - {target}
+    complaints = [
+        Complaint(
+            str(folder), "is not a folder of the run's own; remove it, or name another output"
+        )
+        for folder in sorted(folders)
+        if folder.is_symlink() or (folder.exists() and not folder.is_dir())
+    ]
+    complaints += [
+        Complaint(str(target / name), "is a folder; remove it, or name another output")
+        for name in outputs
+        if (target / name).is_dir() and not (target / name).is_symlink()
+    ]
+    if complaints:
+        raise FileAccessError(complaints)
 
 
 def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
@@ -226,7 +253,7 @@ def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
 def _write_all(folder: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> None:
     for name, data in outputs.items():
         path = folder / name
-        with atomic.plain_words(path, "cannot be written"):
+        with plain_words(path, "cannot be written"):
             path.parent.mkdir(exist_ok=True)
         atomic.write_through(path, data)
     for inner in {(folder / name).parent for name in outputs}:
@@ -236,7 +263,7 @@ def _write_all(folder: Path, outputs: Mapping[str, bytes], accept: Callable[[byt
 
 def _appear(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> None:
     """Build a folder beside its name, and give it the name when it is whole."""
-    with atomic.plain_words(target, "cannot be written"):
+    with plain_words(target, "cannot be written"):
         target.parent.mkdir(parents=True, exist_ok=True)
         with atomic.new_folder(target.parent, target.name) as building:
             _write_all(building, outputs, accept)
@@ -244,46 +271,102 @@ def _appear(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes]
         atomic.sync_folder(target.parent)
 
 
+def _may_be_exchanged(target: Path) -> bool:
+    """Tell whether a folder holds an earlier run and nothing else, and is no one's place."""
+    if not is_run(target) or not os.access(target.resolve().parent, os.W_OK):
+        return False
+    # Whoever stands in it would stay in the one that is removed.
+    if Path.cwd().is_relative_to(target.resolve()):
+        return False
+    own = {MANIFEST, *(entry["name"] for entry in read_manifest(target)["files"])}
+    folders = {str(Path(name).parent) for name in own}
+    for path in target.rglob("*"):
+        name = str(path.relative_to(target))
+        if atomic.is_temporary(name.split(os.sep)[0]):
+            continue
+        if path.is_symlink() or name not in (folders if path.is_dir() else own):
+            return False
+    return True
+
+
+def _exchange(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> bool:
+    """Build a folder beside, and give each the name of the other; tell whether that went."""
+    home = target.resolve()
+    with (
+        plain_words(target, "cannot be written"),
+        atomic.new_folder(home.parent, home.name) as building,
+    ):
+        before, after = home.stat(), building.stat()
+        if (before.st_uid, before.st_gid) != (after.st_uid, after.st_gid):
+            return False
+        _write_all(building, outputs, accept)
+        building.chmod(stat.S_IMODE(before.st_mode))
+        if not exchange(building, home):
+            return False
+        atomic.sync_folder(home.parent)
+    return True
+
+
 def _fill(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> None:
     """Build inside an existing folder, then move every file to its place, the manifest last.
 
     The run that was there loses its manifest before its first file is
-    replaced, so that a mixture is never a run.
+    replaced, so that a mixture is never a run; it is put back if that fails.
     """
     with (
-        atomic.plain_words(target, "cannot be written"),
+        plain_words(target, "cannot be written"),
         atomic.new_folder(target, MANIFEST) as building,
     ):
         _write_all(building, outputs, accept)
-        discard_run(target)
-        # A manifest that is none of ours, or that is broken, also goes first.
-        (target / MANIFEST).unlink(missing_ok=True)
+        aside = building / "earlier"
+        earlier = [MANIFEST]  # one that is none of ours, or that is broken, also goes first
+        if is_run(target):
+            earlier += [entry["name"] for entry in read_manifest(target)["files"]]
+        earlier += [name for name in outputs if name not in earlier]
         try:
-            for name in outputs:
-                (target / name).parent.mkdir(exist_ok=True)
-                if name == MANIFEST:
-                    for inner in {(target / other).parent for other in outputs}:
-                        atomic.sync_folder(inner)
-                os.replace(building / name, target / name)
+            with undisturbed():
+                _move(target, aside, _inside(target, earlier))
+                *files, manifest = outputs
+                _move(building, target, files)
+                for inner in {(target / name).parent for name in files}:
+                    atomic.sync_folder(inner)
+                _move(building, target, [manifest])
         except BaseException:
             _remove(target, [name for name in outputs if not (building / name).exists()])
+            _move(aside, target, reversed(earlier))
             raise
+        _remove_empty(target, earlier)
         atomic.sync_folder(target)
 
 
-def _remove(home: Path, names: Iterable[str]) -> None:
+def _move(source: Path, to: Path, names: Iterable[str]) -> None:
+    """Move those of the named files that exist."""
+    for name in names:
+        if os.path.lexists(source / name):
+            (to / name).parent.mkdir(parents=True, exist_ok=True)
+            os.replace(source / name, to / name)
+
+
+def _inside(home: Path, names: Iterable[str]) -> list[str]:
     # A linked folder may lead out of this one; what is there is not the run's.
-    inside = [
-        name for name in names if (home / name).parent.resolve().is_relative_to(home.resolve())
-    ]
-    for name in inside:
-        path = home / name
-        with atomic.plain_words(path, "cannot be removed"):
-            path.unlink(missing_ok=True)
-    for folder in {(home / name).parent for name in inside} - {home}:
-        # Stays where something else is in it.
+    real = home.resolve()
+    return [name for name in names if (home / name).parent.resolve().is_relative_to(real)]
+
+
+def _remove_empty(home: Path, names: Iterable[str]) -> None:
+    """Remove the folders of files that are gone, where nothing else is in them."""
+    for folder in {(home / name).parent for name in names} - {home}:
         with suppress(OSError):
             folder.rmdir()
+
+
+def _remove(home: Path, names: Iterable[str]) -> None:
+    inside = _inside(home, names)
+    for name in inside:
+        path = home / name
+        with plain_words(path, "cannot be removed"):
+            path.unlink(missing_ok=True)
+    _remove_empty(home, inside)
     atomic.sync_folder(home)
 
 

@@ -1,7 +1,6 @@
 """Dispatch, the exit code of every kind of ending, and the group's options."""
 
 import os
-import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -173,41 +172,3 @@ def test_a_closed_stdout_is_1_in_one_line(
         check=False,
     )
     assert (done.returncode, done.stderr) == (1, b"stdout: is closed\n")
-
-
-# Tells on stdout when it is about to wait for stdin, so that the signal comes
-# neither too early nor too late.
-WAITING = """
-import sys
-import des_cli.cli.reduce as module
-from des_cli.cli.main import program
-
-def read_stdin(sources, read=module.read_stdin):
-    print("waiting", flush=True)
-    return read(sources)
-
-module.read_stdin = read_stdin
-program.main(["reduce", "-", "-o", "x.csv"])
-"""
-
-
-@pytest.mark.skipif(os.name != "posix", reason="signals of a POSIX system")
-def test_ctrl_c_is_130_and_leaves_nothing(
-    tmp_path: Path, python_environment: dict[str, str]
-) -> None:
-    process = subprocess.Popen(
-        [sys.executable, "-c", WAITING],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=python_environment,
-        cwd=tmp_path,
-    )
-    with process:
-        assert process.stdout is not None
-        assert process.stderr is not None
-        assert process.stdout.readline() == b"waiting\n"
-        process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=60) == 130
-        assert process.stderr.read() == b"interrupted\n"
-    assert list(tmp_path.iterdir()) == []

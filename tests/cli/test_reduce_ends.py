@@ -1,8 +1,12 @@
 """``reduce``: what is refused, what has no solution, and with which exit code."""
 
+import os
+
 import numpy as np
 import pytest
 
+from des_cli.runs_out.lock import locked
+from des_cli.runs_out.manifest import is_run
 from tests.support.run_files import csv_rows
 
 
@@ -95,6 +99,53 @@ def test_a_failed_overwrite_leaves_no_older_table(invoke, small: str, tmp_path) 
         assert f"withdrew the earlier {out}" in result.stderr
         assert not (tmp_path / "x.csv").exists()
         assert not list(tmp_path.glob("folder/*.*"))
+
+
+@pytest.mark.parametrize("args", [[], ["--jobs", "2", "--keep-going"]], ids=["one", "batch"])
+def test_a_profile_that_was_broken_leaves_no_older_table(
+    invoke, write_profile, tmp_path, args: list[str]
+) -> None:
+    names = [write_profile(name).name for name in (("bad", "good") if args else ("bad",))]
+    assert invoke("reduce", *names, "--no-plots", *args).exit_code == 0
+    write_profile("bad", fork_deg="sin(")
+    result = invoke("-q", "reduce", *names, "--no-plots", "--overwrite", *args)
+    assert result.exit_code == (1 if args else 3)
+    assert "withdrew the earlier runs/bad" in result.stderr
+    assert not list((tmp_path / "runs" / "bad").iterdir())
+    assert is_run(tmp_path / "runs" / "good") is bool(args)
+
+
+def test_a_profile_that_was_broken_never_passes_over_an_older_table(
+    invoke, write_profile, tmp_path
+) -> None:
+    name = write_profile("bad").name
+    assert invoke("reduce", name, "--no-plots").exit_code == 0
+    write_profile("bad", fork_deg="sin(")
+    result = invoke("-q", "reduce", name, "--no-plots")
+    assert result.exit_code == 3
+    assert "left the earlier runs/bad as it is" in result.stderr
+    (tmp_path / name).write_text("name: [")
+    result = invoke("-q", "reduce", name, "--no-plots", "--overwrite")
+    assert result.exit_code == 3
+    assert "left an earlier run of bad.yaml in runs" in result.stderr
+    assert is_run(tmp_path / "runs" / "bad")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="nothing is locked on Windows")
+@pytest.mark.parametrize("overwrite", [False, True])
+@pytest.mark.parametrize("out", ["x.csv", "folder", "runs"])
+def test_an_output_that_another_run_writes_is_refused(
+    invoke, write_profile, tmp_path, out: str, overwrite: bool
+) -> None:
+    names = [write_profile(name).name for name in (("one", "two") if out == "runs" else ("one",))]
+    target = tmp_path / "runs" / "one" if out == "runs" else tmp_path / out
+    args = ("--no-plots", "-o", out, *(["--overwrite"] if overwrite else []))
+    with locked(target):
+        result = invoke("reduce", *names, *args, "--keep-going")
+    assert result.exit_code == 1
+    assert f"is being written by another run (process {os.getpid()})" in result.stderr
+    assert not target.exists()
+    assert is_run(tmp_path / "runs" / "two") is (out == "runs")
 
 
 def test_an_existing_output_is_refused_before_solving(invoke, small: str, tmp_path) -> None:

@@ -62,6 +62,12 @@ def test_a_file_with_nothing_to_fly_is_told_every_kind_and_its_own_columns() -> 
     assert words.endswith(r"there are a, 'b\x1b'; name those to read with --column NAME=HEADER")
 
 
+def test_the_text_of_what_is_no_table_is_not_repeated() -> None:
+    words = nothing_to_fly(header_of("root:x:0:0"))
+    assert "root" not in words
+    assert "--separator" in words
+
+
 def test_of_several_kinds_the_quantities_that_are_there_are_told() -> None:
     found = [column(name) for name in ("r_rpm", "p_rpm", "fork_deg", "gz_g")]
     assert several_kinds([JOINT_COMMANDS, BODY_RATES], found) == (

@@ -197,6 +197,25 @@ def test_a_new_folder_is_gone_after_an_exception(tmp_path: Path) -> None:
     assert names(tmp_path) == []
 
 
+def test_what_a_killed_process_left_is_removed_and_what_is_being_built_is_not(
+    tmp_path: Path,
+) -> None:
+    target, stays = tmp_path / "run", [".run.partial-x", ".run2.partial-0123abcd", "run"]
+    left = [".run.partial-0123abcd", ".run.partial-4567abcd"]
+    (tmp_path / left[0]).mkdir()
+    (tmp_path / left[0] / "x").write_bytes(b"half")
+    (tmp_path / left[1]).write_bytes(b"half")
+    for name in stays:
+        (tmp_path / name).mkdir()
+    with new_folder(tmp_path, "run") as first:
+        assert names(tmp_path) == sorted([*stays, first.name])
+        with new_folder(tmp_path, "run") as second:
+            assert names(tmp_path) == sorted([*stays, first.name, second.name])
+        write_file(tmp_path / "x", b"")
+        assert first.is_dir()
+    assert target.is_dir()
+
+
 @pytest.mark.parametrize(
     ("name", "expected"),
     [(".x.partial-0123abcd", True), (".x.partial-", False), ("x.partial-0123abcd", False)],

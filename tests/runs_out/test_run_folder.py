@@ -5,6 +5,7 @@ import json
 import math
 import os
 import shutil
+import stat
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,9 @@ import pytest
 
 from des_cli.errors import FileAccessError, NotReleasedError
 from des_cli.model.run import Run
+from des_cli.runs_out import run_folder
+from des_cli.runs_out.atomic import is_temporary
+from des_cli.runs_out.exchange import exchange
 from des_cli.runs_out.manifest import is_run
 from des_cli.runs_out.run_folder import discard_run, read_run, write_run
 from des_cli.runs_out.tables import trajectory_columns
@@ -129,9 +133,10 @@ class Fuse:
     ("existing", "name"),
     [
         *(("absent", name) for name in ("open", "fsync", "mkdir", "rename")),
+        *(("run", name) for name in ("open", "fsync", "mkdir")),
         *(
             (existing, name)
-            for existing in ("empty", "run", "foreign")
+            for existing in ("empty", "run that stays", "foreign")
             for name in ("open", "fsync", "mkdir", "replace")
         ),
     ],
@@ -143,11 +148,13 @@ def test_an_interruption_at_any_moment_leaves_no_output(
     name: str,
     existing: str,
 ) -> None:
-    """Every call is interrupted once; then there is the old run, or the new one, or none."""
+    """Every call is interrupted once; then there is what was there, or the new run."""
     run, target = synthetic_run(11), tmp_path / "cobra"
+    if existing == "run that stays":  # where no two folders can be exchanged
+        monkeypatch.setattr(run_folder, "exchange", lambda one, other: False)
     for blow_at in range(1, 50):
         shutil.rmtree(target, ignore_errors=True)
-        if existing == "run":
+        if existing.startswith("run"):
             write_run(synthetic_run(21), target, plots=False)
         elif existing != "absent":
             target.mkdir()
@@ -163,17 +170,100 @@ def test_an_interruption_at_any_moment_leaves_no_output(
             else:
                 assert fuse.calls < blow_at
                 break
-        assert [path.name for path in tmp_path.iterdir()] in ([], ["cobra"])
+        beside = [path.name for path in tmp_path.iterdir()]
+        if name == "open" and existing.startswith("run"):
+            # The removal of the earlier run was interrupted: the next one clears it away.
+            beside = [each for each in beside if not is_temporary(each)]
+        assert beside in ([], ["cobra"])
         left = tree(target)
-        if left != old and is_run(target):
+        if left != old:
             assert len(read_run(target).trajectory["t_s"]) == 11
-        elif left != old:
-            assert set(left) == set(old) - set(FILES)
         if existing == "foreign":
             assert left["thesis.tex"] == b"years of work"
     else:
         pytest.fail("the fuse never came to its end")
     assert blow_at > 1, "nothing was interrupted"
+
+
+def test_a_run_is_replaced_in_one_step(
+    stored: Path, synthetic_run: MakeRun, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the only moment at which anything changes there is the old run, then the new one."""
+    seen = []
+
+    def watched(one: Path, other: Path) -> bool:
+        seen.append(len(read_run(stored).trajectory["t_s"]))
+        done = exchange(one, other)
+        seen.append(len(read_run(stored).trajectory["t_s"]))
+        return done
+
+    monkeypatch.setattr(run_folder, "exchange", watched)
+    stored.chmod(0o750)
+    write_run(synthetic_run(51), stored, plots=False, overwrite=True)
+    assert seen == [101, 51 if exchange_works(stored) else 101]
+    assert len(read_run(stored).trajectory["t_s"]) == 51
+    assert stat.S_IMODE(stored.stat().st_mode) == 0o750
+    assert [path.name for path in stored.parent.iterdir()] == ["cobra"]
+
+
+def exchange_works(folder: Path) -> bool:
+    one, other = folder / "one", folder / "other"
+    one.mkdir()
+    other.mkdir()
+    return exchange(one, other)
+
+
+@pytest.mark.parametrize("what", ["link", "file"])
+def test_plots_that_are_no_folder_are_not_written_through(
+    tmp_path: Path, stored: Path, synthetic_run: MakeRun, what: str
+) -> None:
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    if what == "link":
+        (stored / "plots").symlink_to(outside)
+    else:
+        (stored / "plots").write_bytes(b"mine")
+    before = tree(stored)
+    with pytest.raises(FileAccessError, match=r"plots: is not a folder of the run's own"):
+        write_run(synthetic_run(51), stored, overwrite=True)
+    assert tree(stored) == before
+    assert list(outside.iterdir()) == []
+
+
+def test_a_folder_in_the_place_of_a_file_is_not_destroyed(
+    stored: Path, synthetic_run: MakeRun
+) -> None:
+    (stored / "profile.yaml").unlink(missing_ok=True)
+    (stored / "commands.csv").unlink()
+    (stored / "commands.csv").mkdir()
+    (stored / "commands.csv" / "thesis.tex").write_bytes(b"years of work")
+    with pytest.raises(FileAccessError, match=r"commands\.csv: is a folder"):
+        write_run(synthetic_run(51), stored, plots=False, overwrite=True)
+    assert (stored / "commands.csv" / "thesis.tex").read_bytes() == b"years of work"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in folders")
+@pytest.mark.parametrize("name", ["commands.csv", "manifest.json", "metrics.json"])
+@pytest.mark.parametrize("kind", ["pipe", "device"])
+def test_only_files_are_read(stored: Path, name: str, kind: str) -> None:
+    (stored / name).unlink()
+    if kind == "pipe":
+        os.mkfifo(stored / name)
+    else:
+        (stored / name).symlink_to("/dev/zero")
+    with pytest.raises(FileAccessError, match="it is not a file"):
+        read_run(stored)
+    assert is_run(stored) is (name != "manifest.json")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in folders")
+def test_a_pipe_in_the_folder_is_replaced_and_not_waited_for(
+    stored: Path, synthetic_run: MakeRun
+) -> None:
+    (stored / "commands.csv").unlink()
+    os.mkfifo(stored / "commands.csv")
+    write_run(synthetic_run(51), stored, plots=False, overwrite=True)
+    assert len(read_run(stored).trajectory["t_s"]) == 51
 
 
 def test_a_value_that_is_no_number_leaves_no_folder(tmp_path: Path, synthetic_run: MakeRun) -> None:

@@ -1,0 +1,102 @@
+"""A signal ends the command with its exit code, and leaves nothing behind."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.processes import ENDINGS, start
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of a POSIX system")
+
+WORDS = {
+    "SIGHUP": b"hung up\n",
+    "SIGINT": b"interrupted\n",
+    "SIGPIPE": b"",
+    "SIGTERM": b"terminated\n",
+}
+
+# Tells on stdout when it is about to wait for stdin, so that the signal comes
+# neither too early nor too late.
+WAITING = """
+import sys
+import des_cli.cli.reduce as module
+from des_cli.cli.main import main
+
+def read_stdin(sources, read=module.read_stdin):
+    print("waiting", flush=True)
+    return read(sources)
+
+module.read_stdin = read_stdin
+sys.argv[1:] = ["reduce", "-", "-o", "x.csv"]
+main()
+"""
+
+
+def waiting(folder: Path, env: dict[str, str], *ignored: str) -> subprocess.Popen[bytes]:
+    pipe = subprocess.PIPE
+    return start(
+        *(sys.executable, "-c", WAITING),
+        cwd=folder,
+        env=env,
+        ignored=ignored,
+        stdin=pipe,
+        stdout=pipe,
+        stderr=pipe,
+    )
+
+
+@pytest.mark.parametrize("name", sorted(ENDINGS))
+def test_each_ends_with_its_code_in_a_word_and_leaves_nothing(
+    tmp_path: Path, python_environment: dict[str, str], name: str
+) -> None:
+    with waiting(tmp_path, python_environment) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert process.stdout.readline() == b"waiting\n"
+        process.send_signal(getattr(signal, name))
+        assert process.wait(timeout=60) == ENDINGS[name]
+        assert process.stderr.read() == WORDS[name]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_ignored_from_the_start_stays_ignored(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    with waiting(tmp_path, python_environment, "SIGHUP", "SIGINT") as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"waiting\n"
+        process.send_signal(signal.SIGHUP)
+        process.send_signal(signal.SIGINT)
+        _, words = process.communicate(b"name: [", timeout=60)
+    assert process.returncode == 3, words
+
+
+def test_ctrl_c_while_the_command_is_imported_is_no_traceback(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    script = """
+import os, signal, sys
+from importlib.abc import MetaPathFinder
+
+class Interrupting(MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name == "click":
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupting())
+from des_cli.__main__ import main
+main()
+"""
+    process = start(
+        *(sys.executable, "-c", script),
+        cwd=tmp_path,
+        env=python_environment,
+        stderr=subprocess.PIPE,
+    )
+    with process:
+        _, words = process.communicate(timeout=60)
+    assert (process.returncode, words) == (-signal.SIGINT, b"")
