@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from des_cli.errors import Complaint, DesError, UsageError
+from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
 from des_cli.profiles_in.setting import AnySetting
 
 # What needs numpy is imported when a profile is read: a worker must be able to set its
@@ -37,6 +38,8 @@ class Source:
         What ``-`` stands for.
     part : int, optional
         Which stretch between the gaps of a record that is split.
+    caps : Caps
+        The most that is read.
     """
 
     name: str
@@ -46,6 +49,7 @@ class Source:
     decimal: str | None = None
     stdin: bytes | None = None
     part: int | None = None
+    caps: Caps = DEFAULT_CAPS
 
 
 def load_source(source: Source) -> Profile:
@@ -91,6 +95,7 @@ def _how(source: Source) -> dict[str, Any]:
         "stdin": source.stdin,
         "separator": source.separator,
         "decimal": source.decimal,
+        "caps": source.caps,
     }
 
 

@@ -18,10 +18,10 @@ import numpy as np
 
 from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
+from des_cli.profiles_in.caps import DEFAULT_CAPS
 from des_cli.profiles_in.clock import is_clock
 from des_cli.profiles_in.csv_header import Header, is_comment
 from des_cli.profiles_in.gaps import LONGEST_BRIDGED
-from des_cli.profiles_in.sampling import MAX_SAMPLES
 from des_cli.profiles_in.wording import plain, shown
 
 _WORTH_TELLING = 30
@@ -57,6 +57,8 @@ def read_columns(
     places: Sequence[int],
     may_lack: Sequence[int] = (),
     clock: int | None = None,
+    *,
+    most_rows: int = DEFAULT_CAPS.rows,
 ) -> Rows:
     """Read the numbers of some columns.
 
@@ -70,6 +72,7 @@ def read_columns(
     clock : int, optional
         The one of them that may hold times of day or dates; they become not a
         number, and `column_text` has them.
+    most_rows : int
 
     Returns
     -------
@@ -81,10 +84,38 @@ def read_columns(
         With every row that is not as long as the header or holds something
         else than finite numbers; what is wrong alike on many rows is one line.
     """
+    _require_few(header.text.count("\n"), header, most_rows)
+    _require_end(header, places)
     rows = _read_fast(header, places)
     if rows is None:
-        rows = _read_slowly(header, places, [place in may_lack for place in places], clock)
+        optional = [place in may_lack for place in places]
+        rows = _read_slowly(header, places, optional, clock, most_rows)
     return rows
+
+
+def _require_few(rows: int, header: Header, most: int) -> None:
+    """Refuse a file before its numbers are made, which take more memory than its text."""
+    if rows > most:
+        what = f"has more than {most} rows; --max-rows reads more"
+        raise ProfileError([Complaint(header.label, what)])
+
+
+def _require_end(header: Header, places: Sequence[int]) -> None:
+    """Refuse a last line that does not end where its last number is read.
+
+    Such a file may have been cut inside the number: 0.0 of 0.0125 is a number too.
+    """
+    if not header.text or header.text.endswith(("\n", "\r")):
+        return
+    start = max(header.text.rfind("\n"), header.text.rfind("\r")) + 1
+    cells = header.dialect.split(header.text[start:])
+    if len(cells) - 1 in places and header.dialect.is_number(cells[-1]):
+        line = header.lines + header.text.count("\n") + 1
+        what = (
+            f"{plain(header.names[len(cells) - 1])}: the last line does not end, and may have been "
+            f"cut inside its number {shown(cells[-1].strip())}: end the line, or take it out"
+        )
+        raise ProfileError([Complaint(f"{header.label}:{line}", what)])
 
 
 def column_text(header: Header, place: int) -> list[str]:
@@ -110,13 +141,17 @@ def _read_fast(header: Header, places: Sequence[int]) -> Rows | None:
     if values.shape != (body.count("\n") + 1, len(header.names)):
         return None
     chosen = np.ascontiguousarray(values[:, places])
-    if not np.isfinite(chosen).all() or len(chosen) > MAX_SAMPLES:
+    if not np.isfinite(chosen).all():
         return None
     return Rows(chosen, range(header.lines + 1, header.lines + 1 + len(chosen)))
 
 
 def _read_slowly(
-    header: Header, places: Sequence[int], may_lack: Sequence[bool], clock: int | None
+    header: Header,
+    places: Sequence[int],
+    may_lack: Sequence[bool],
+    clock: int | None,
+    most_rows: int,
 ) -> Rows:
     complaints = _ByWords(header.label)
     records = _Records(header, complaints)
@@ -141,9 +176,7 @@ def _read_slowly(
         if not complaints:
             values.append(row)
             lines.append(line)
-            if len(values) > MAX_SAMPLES:
-                what = f"has more than {MAX_SAMPLES} rows"
-                raise ProfileError([Complaint(header.label, what)])
+            _require_few(len(values), header, most_rows)
     found = complaints.complaints()
     if not values and not found:
         found.append(Complaint(header.label, "has a header but no rows"))

@@ -16,6 +16,7 @@ import numpy as np
 from des_cli import __version__
 from des_cli.errors import Complaint, FileAccessError
 from des_cli.model.profile import Profile
+from des_cli.profiles_in.source import label_of, read_source
 from des_cli.runs_out import atomic
 
 RUN_FORMAT = "des-coriolis/run/1"
@@ -89,9 +90,8 @@ def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def read_bytes(path: Path) -> bytes:
-    """Return the bytes of a file, or raise FileAccessError."""
-    with atomic.plain_words(path, "cannot be read"):
-        return path.read_bytes()
+    """Return the bytes of a regular file, or raise FileAccessError."""
+    return read_source(path, label_of(path), None)
 
 
 def parse_object(path: Path, data: bytes) -> dict[str, Any]:
