@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
@@ -17,7 +18,7 @@ from typing import Any, NoReturn
 import click
 
 from des_cli import __version__
-from des_cli.cli.console import Console
+from des_cli.cli.console import DEBUG_VARIABLE, Console
 from des_cli.cli.options import color_option, verbosity_options
 from des_cli.errors import ExitCode, Failure
 
@@ -97,6 +98,16 @@ def _discard_stdout() -> None:
         os.close(nowhere)
 
 
+def _keep_warnings() -> None:
+    """Keep Python's warnings, which name lines of the source, from who uses a command.
+
+    What concerns a user is a sentence of the tool's own. Workers read the environment.
+    """
+    if not sys.warnoptions and not os.environ.get(DEBUG_VARIABLE):
+        os.environ["PYTHONWARNINGS"] = "ignore"
+        warnings.simplefilter("ignore")
+
+
 @click.command(
     PROGRAM,
     cls=Program,
@@ -120,4 +131,5 @@ def program() -> None:
 
 def main() -> NoReturn:
     """Run the command line of this process."""
+    _keep_warnings()
     program.main()

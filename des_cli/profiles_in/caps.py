@@ -16,8 +16,8 @@ class Caps:
     rows : int
         Of a table, and samples of a profile: 1 kHz for a quarter of an hour.
     mib : int
-        Of a file or of standard input, in 2^20 bytes. Reading takes about six times as much
-        memory: within half a GiB.
+        Of a file or of standard input, in 2^20 bytes. Reading takes up to ten times as much
+        memory.
     """
 
     rows: int = 1_000_000

@@ -8,7 +8,6 @@ say what is wrong and where.
 from __future__ import annotations
 
 import csv
-import io
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -20,12 +19,15 @@ from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.profiles_in.caps import DEFAULT_CAPS
 from des_cli.profiles_in.clock import is_clock
-from des_cli.profiles_in.csv_header import Header, is_comment
+from des_cli.profiles_in.csv_header import Header, is_comment, lines_of, require_line
 from des_cli.profiles_in.gaps import LONGEST_BRIDGED
 from des_cli.profiles_in.wording import plain, shown
 
 _WORTH_TELLING = 30
 """Kinds of wrong rows described before the rest is only counted."""
+
+_WORTH_COUNTING = 10_000
+"""Wrong rows left unsaid after which reading stops."""
 
 _LEFT_OUT = (
     f"take out the rows without a number: a gap of up to {LONGEST_BRIDGED:g} s is then bridged, "
@@ -84,7 +86,7 @@ def read_columns(
         With every row that is not as long as the header or holds something
         else than finite numbers; what is wrong alike on many rows is one line.
     """
-    _require_few(header.text.count("\n"), header, most_rows)
+    require_few_rows(header.text.count("\n"), header.label, most_rows)
     _require_end(header, places)
     rows = _read_fast(header, places)
     if rows is None:
@@ -93,11 +95,11 @@ def read_columns(
     return rows
 
 
-def _require_few(rows: int, header: Header, most: int) -> None:
+def require_few_rows(rows: int, label: str, most: int) -> None:
     """Refuse a file before its numbers are made, which take more memory than its text."""
     if rows > most:
         what = f"has more than {most} rows; --max-rows reads more"
-        raise ProfileError([Complaint(header.label, what)])
+        raise ProfileError([Complaint(label, what)])
 
 
 def _require_end(header: Header, places: Sequence[int]) -> None:
@@ -135,7 +137,7 @@ def _read_fast(header: Header, places: Sequence[int]) -> Rows | None:
         body = body.replace(",", ".")
     delimiter = None if separator == " " else separator
     try:
-        values = np.loadtxt(io.StringIO(body), delimiter=delimiter, comments=None, ndmin=2)
+        values = np.loadtxt(lines_of(body), delimiter=delimiter, comments=None, ndmin=2)
     except ValueError:
         return None
     if values.shape != (body.count("\n") + 1, len(header.names)):
@@ -173,10 +175,12 @@ def _read_slowly(
                 row.append(math.nan)
                 continue
             complaints.add(line, cell_complaint(place, cell))
+        if complaints.many:
+            break
         if not complaints:
             values.append(row)
             lines.append(line)
-            _require_few(len(values), header, most_rows)
+            require_few_rows(len(values), header.label, most_rows)
     found = complaints.complaints()
     if not values and not found:
         found.append(Complaint(header.label, "has a header but no rows"))
@@ -196,6 +200,11 @@ class _ByWords:
     def __bool__(self) -> bool:
         return bool(self._found)
 
+    @property
+    def many(self) -> bool:
+        """Whether so many kinds were left unsaid that nobody needs the exact number."""
+        return self._unsaid >= _WORTH_COUNTING
+
     def add(self, line: int, what: str) -> None:
         """Add what is wrong with a row."""
         if what in self._found:
@@ -214,7 +223,8 @@ class _ByWords:
             for what, (line, count) in self._found.items()
         ]
         if self._unsaid:
-            words = f"… and {self._unsaid} more cells or rows like these"
+            count = f"{self._unsaid} or more" if self.many else f"{self._unsaid} more"
+            words = f"… and {count} cells or rows like these"
             said.append(Complaint(self._label, words))
         return said
 
@@ -238,8 +248,9 @@ class _Records:
 
     def _lines(self) -> Iterator[str]:
         """Iterate over the lines; what starts inside a quoted cell is no comment."""
-        for line in io.StringIO(self._header.text, newline=""):
+        for line in lines_of(self._header.text):
             self._line += 1
+            require_line(line, self._header.label, self._line)
             if self._fresh and is_comment(line):
                 self.comments += 1
                 continue

@@ -16,7 +16,7 @@ from des_cli.profiles_in.column_kinds import EULER, JOINTS, QUATERNION, RATES, C
 from des_cli.profiles_in.columns import choose_columns
 from des_cli.profiles_in.conditioning import Conditioning, in_seat_axes, resampled, rows_inside
 from des_cli.profiles_in.csv_header import Header, comment_lines, split_header
-from des_cli.profiles_in.csv_table import Rows, read_columns
+from des_cli.profiles_in.csv_table import Rows, read_columns, require_few_rows
 from des_cli.profiles_in.g_commands import STEP, sampled_g
 from des_cli.profiles_in.g_schema import G_STEMS
 from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
@@ -25,6 +25,9 @@ from des_cli.profiles_in.rates_of_positions import joint_commands_of_samples
 from des_cli.profiles_in.record_checks import check_magnitudes, check_times, tell_doubtful_units
 from des_cli.profiles_in.sample_times import sample_times
 from des_cli.profiles_in.wording import plain
+
+_LINES_ABOVE = 1000
+"""Lines that may stand above the rows, before these are counted exactly."""
 
 _TOLD = 20
 """Jumps described."""
@@ -76,6 +79,7 @@ def parse_samples(
     ProfileError
         With everything that is wrong.
     """
+    require_few_rows(max(text.count("\n"), text.count("\r")) - _LINES_ABOVE, label, most_rows)
     conditioning = conditioning or Conditioning()
     remarks = [] if remarks is None else remarks
     header = split_header(text, label, separator, decimal, columns.values())

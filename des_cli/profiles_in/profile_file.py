@@ -6,11 +6,13 @@ import os
 import re
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 
 from des_cli.errors import Complaint, FileAccessError
 from des_cli.profiles_in.builtin import builtin_profile, builtin_profiles
 from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
+from des_cli.profiles_in.csv_header import lines_of
 from des_cli.profiles_in.source import STDIN_LABEL, decode_table, label_of, read_source
 from des_cli.profiles_in.wording import did_you_mean
 
@@ -85,7 +87,7 @@ class ProfileFile:
         suffix = self.path.suffix.lower() if self.path else ""
         if suffix in (".yaml", ".yml", ".csv"):
             return suffix != ".csv"
-        for line in self.table[0].splitlines()[:1000]:
+        for line in islice(lines_of(self.table[0]), 1000):
             if line.strip() and not line.lstrip().startswith("#"):
                 return _YAML_LINE.match(line) is not None
         return False

@@ -27,10 +27,10 @@ from ruamel.yaml.events import (
 from des_cli.errors import Complaint, ProfileError
 from des_cli.profiles_in.wording import plain, shown
 
-MAX_BYTES = 1 << 19
+MAX_BYTES = 1 << 18
 """Longest YAML text read; recorded samples belong in a CSV file."""
 
-MAX_NODES = 50_000
+MAX_NODES = 20_000
 """Values in a file."""
 
 MAX_DEPTH = 20
@@ -77,6 +77,14 @@ class Node:
         elif isinstance(self.value, list):
             yield from enumerate(self.value)
 
+    def child(self, step: Step) -> Node | None:
+        """Return a member of a mapping or list by its key or index, or None."""
+        if isinstance(self.value, dict):
+            return self.value.get(step) if isinstance(step, str) else None
+        if isinstance(self.value, list) and isinstance(step, int) and step < len(self.value):
+            return self.value[step]
+        return None
+
     def plain(self) -> Any:
         """Return the value as plain dictionaries, lists and scalars."""
         if isinstance(self.value, dict):
@@ -96,7 +104,7 @@ class Node:
         """
         node, key_place = self, self.place
         for step in path:
-            following = dict(node.children()).get(step)
+            following = node.child(step)
             if following is None:
                 return node.place
             key_place = node.key_places.get(str(step), following.place)

@@ -211,3 +211,23 @@ def test_ctrl_c_is_130_and_leaves_nothing(
         assert process.wait(timeout=60) == 130
         assert process.stderr.read() == b"interrupted\n"
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("debug", "shown"), [("", False), ("1", True)])
+def test_warnings_of_python_reach_only_who_mends_the_tool(
+    command: Command, tmp_path: Path, debug: str, shown: bool
+) -> None:
+    """Of a command here, and of whatever process it starts."""
+    (tmp_path / "try.py").write_text(
+        "import subprocess, sys, warnings\n"
+        "from des_cli.cli import main\n"
+        "def program():\n"
+        "    warnings.warn('here', RuntimeWarning)\n"
+        "    code = \"import warnings; warnings.warn('there', RuntimeWarning)\"\n"
+        "    subprocess.run([sys.executable, '-c', code])\n"
+        "main.program.main = program\n"
+        "main.main()\n"
+    )
+    environment = {"DES_CORIOLIS_DEBUG": debug}
+    done = command(env=environment, program=["try.py"])
+    assert [word in done.stderr.decode() for word in ("here", "there")] == [shown, shown]

@@ -95,7 +95,7 @@ def test_all_repeated_keys_are_named_with_their_first_line() -> None:
         ("[" * 5000, "x.yaml:1:21", f"more than {MAX_DEPTH} levels"),
         ("- " * 5000, "x.yaml:1:41", f"more than {MAX_DEPTH} levels"),
         ("a: [" + "1," * (MAX_NODES + 1) + "]", "x.yaml", f"more than {MAX_NODES} values"),
-        ("x" * (1 << 20), "x.yaml", "larger than 512 KiB"),
+        ("x" * (1 << 20), "x.yaml", "larger than 256 KiB"),
     ],
 )
 def test_what_is_not_plain_yaml_is_refused_in_one_line(text: str, where: str, words: str) -> None:
