@@ -26,9 +26,9 @@ import sys
 import des_cli.cli.reduce as module
 from des_cli.cli.main import main
 
-def read_stdin(sources, read=module.read_stdin):
+def read_stdin(sources, caps, read=module.read_stdin):
     print("waiting", flush=True)
-    return read(sources)
+    return read(sources, caps)
 
 module.read_stdin = read_stdin
 sys.argv[1:] = ["reduce", "-", "-o", "x.csv"]

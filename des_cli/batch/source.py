@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from des_cli.errors import Complaint, DesError, UsageError
+from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
 from des_cli.profiles_in.setting import AnySetting
 
 # What needs numpy is imported when a profile is read: a worker must be able to set its
@@ -37,6 +38,8 @@ class Source:
         What ``-`` stands for.
     part : int, optional
         Which stretch between the gaps of a record that is split.
+    caps : Caps
+        The most that is read.
     """
 
     name: str
@@ -46,6 +49,7 @@ class Source:
     decimal: str | None = None
     stdin: bytes | None = None
     part: int | None = None
+    caps: Caps = DEFAULT_CAPS
 
 
 def load_source(source: Source) -> Profile:
@@ -59,7 +63,7 @@ def name_of_source(source: Source) -> str:
     """Return the name of a profile that is rejected; empty where it cannot be told."""
     from des_cli.profiles_in.profile_name import find_name
 
-    return find_name(source.name, settings=source.settings, stdin=source.stdin)
+    return find_name(source.name, settings=source.settings, stdin=source.stdin, caps=source.caps)
 
 
 def load_source_variants(
@@ -98,6 +102,7 @@ def _how(source: Source) -> dict[str, Any]:
         "stdin": source.stdin,
         "separator": source.separator,
         "decimal": source.decimal,
+        "caps": source.caps,
     }
 
 

@@ -15,6 +15,7 @@ from des_cli.cli.source_options import machine_option, read_stdin, setting_optio
 from des_cli.cli.state_options import in_si, option_name, state_options
 from des_cli.cli.stdout import write_data
 from des_cli.model.machine import JOINTS, Seat
+from des_cli.profiles_in.caps import Caps
 from des_cli.profiles_in.setting import AnySetting
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def kinematics(
     columns: dict[str, str],
     separator: str | None,
     decimal: str | None,
+    caps: Caps,
     form: str | None,
     **numbers: float | None,
 ) -> None:
@@ -71,10 +73,11 @@ def kinematics(
             profile,
             settings,
             machine=machine,
-            stdin=read_stdin((profile,)),
+            stdin=read_stdin((profile,), caps),
             columns=columns,
             separator=separator,
             decimal=decimal,
+            caps=caps,
         )
         write_data(_motion(source, form))
         return

@@ -7,7 +7,9 @@ exit code.
 
 from __future__ import annotations
 
+import os
 import sys
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, NoReturn
@@ -15,7 +17,7 @@ from typing import Any, NoReturn
 import click
 
 from des_cli import __version__
-from des_cli.cli.console import Console
+from des_cli.cli.console import DEBUG_VARIABLE, Console
 from des_cli.cli.options import color_option, verbosity_options
 from des_cli.cli.terminal import give_up
 from des_cli.errors import ExitCode, Failure
@@ -98,6 +100,16 @@ def _end(console: Console, error: BaseException) -> ExitCode:
     return failure.exit_code
 
 
+def _keep_warnings() -> None:
+    """Keep Python's warnings, which name lines of the source, from who uses a command.
+
+    What concerns a user is a sentence of the tool's own. Workers read the environment.
+    """
+    if not sys.warnoptions and not os.environ.get(DEBUG_VARIABLE):
+        os.environ["PYTHONWARNINGS"] = "ignore"
+        warnings.simplefilter("ignore")
+
+
 @click.command(
     PROGRAM,
     cls=Program,
@@ -121,6 +133,7 @@ def program() -> None:
 
 def main() -> NoReturn:
     """Run the command line of this process, until it is done or a signal ends it."""
+    _keep_warnings()
     try:
         with stopping():
             program.main()

@@ -29,6 +29,7 @@ from des_cli.cli.source_options import (
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.summary import exit_code_of, print_closing, print_result
 from des_cli.errors import ExitCode
+from des_cli.profiles_in.caps import Caps
 from des_cli.profiles_in.setting import AnySetting
 
 
@@ -83,6 +84,7 @@ def reduce(
     columns: dict[str, str],
     separator: str | None,
     decimal: str | None,
+    caps: Caps,
     out: str | None,
     table_format: str | None,
     jobs: int,
@@ -106,7 +108,7 @@ def reduce(
         raise click.UsageError("--resume needs run folders: a table does not tell its profile.")
     if out == STANDARD_STREAM and not dry_run:
         refuse_binary_on_terminal(form)
-    stdin = read_stdin(profiles)
+    stdin = read_stdin(profiles, caps)
     output = Output(
         out=DEFAULT_RUNS if out is None else out,
         out_is_parent=out is None or len(profiles) > 1,
@@ -126,6 +128,7 @@ def reduce(
                 columns=columns,
                 separator=separator,
                 decimal=decimal,
+                caps=caps,
             ),
             output,
             fail_on,

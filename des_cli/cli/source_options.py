@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from typing import Any, TypeVar
+from functools import wraps
+from typing import Any, TypeVar, cast
 
 import click
 
 from des_cli.batch.source import STANDARD_STREAM, Source
 from des_cli.cli.conditioning_options import conditioning_options
 from des_cli.errors import Complaint, FileAccessError
+from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
 from des_cli.profiles_in.setting import AnySetting, Setting
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -65,7 +67,33 @@ def setting_options(command: F) -> F:
         callback=_read_decimal,
         help="The decimal sign of a CSV profile: '.' or ','.",
     )
-    return settings(columns(separator(decimal(gap(conditioning_options(command))))))
+    return settings(columns(separator(decimal(gap(conditioning_options(_cap_options(command)))))))
+
+
+def _cap_options(command: F) -> F:
+    """Add ``--max-rows`` and ``--max-mib``; a command gets them as its ``caps``."""
+
+    @wraps(command)
+    def with_caps(*args: Any, max_rows: int, max_mib: int, **values: Any) -> Any:
+        return command(*args, caps=Caps(max_rows, max_mib), **values)
+
+    rows = click.option(
+        "--max-rows",
+        type=click.IntRange(min=2),
+        metavar="N",
+        default=DEFAULT_CAPS.rows,
+        show_default=True,
+        help="The most rows of a table, and samples of a profile, that are read.",
+    )
+    mib = click.option(
+        "--max-mib",
+        type=click.IntRange(min=1),
+        metavar="N",
+        default=DEFAULT_CAPS.mib,
+        show_default=True,
+        help="The most that is read of a file or of stdin, in 2^20 bytes.",
+    )
+    return cast(F, rows(mib(with_caps)))
 
 
 def machine_option(command: F) -> F:
@@ -108,7 +136,7 @@ def source_of(
     stdin : bytes, optional
         What `read_stdin` found, of all sources.
     **read
-        Values of ``--column``, ``--separator`` and ``--decimal``.
+        Values of ``--column``, ``--separator`` and ``--decimal``, and the caps.
     """
     return Source(
         name,
@@ -118,7 +146,7 @@ def source_of(
     )
 
 
-def read_stdin(sources: tuple[str, ...]) -> bytes | None:
+def read_stdin(sources: tuple[str, ...], caps: Caps) -> bytes | None:
     """Return all of stdin if ``-`` is among the sources.
 
     Raises
@@ -126,15 +154,18 @@ def read_stdin(sources: tuple[str, ...]) -> bytes | None:
     click.UsageError
         If it is there twice.
     FileAccessError
-        If this process was started with a closed stdin.
+        If this process was started with a closed stdin, or there is more of it than `caps`
+        has room for.
     """
+    from des_cli.profiles_in.source import STDIN_LABEL, read_stream
+
     if STANDARD_STREAM not in sources:
         return None
     if sources.count(STANDARD_STREAM) > 1:
         raise click.UsageError("stdin ('-') can be read only once.")
     if sys.stdin is None:
         raise FileAccessError([Complaint("stdin", "is closed")])
-    return sys.stdin.buffer.read()
+    return read_stream(sys.stdin.buffer, STDIN_LABEL, caps.mib)
 
 
 def _require_name(

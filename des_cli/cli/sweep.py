@@ -33,6 +33,7 @@ from des_cli.cli.sweep_options import (
 )
 from des_cli.errors import ExitCode
 from des_cli.model.metric import SEAT_G_ERROR, SEAT_RATE_DEVIATION
+from des_cli.profiles_in.caps import Caps
 from des_cli.profiles_in.setting import AnySetting
 
 if TYPE_CHECKING:
@@ -112,6 +113,7 @@ def sweep(
     columns: dict[str, str],
     separator: str | None,
     decimal: str | None,
+    caps: Caps,
     out: str | None,
     table_format: str | None,
     plot: str | None,
@@ -138,10 +140,11 @@ def sweep(
         profile,
         settings,
         machine=machine,
-        stdin=read_stdin((profile,)),
+        stdin=read_stdin((profile,), caps),
         columns=columns,
         separator=separator,
         decimal=decimal,
+        caps=caps,
     )
     plans = _plan(reduction, swept, r2s or (), controls)
     return _run(console, source, plans, jobs, out, form, plot, overwrite)

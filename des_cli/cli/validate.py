@@ -24,6 +24,7 @@ from des_cli.cli.source_options import (
 )
 from des_cli.cli.stdout import write_line
 from des_cli.errors import DesError, ExitCode, Failure
+from des_cli.profiles_in.caps import Caps
 from des_cli.profiles_in.setting import AnySetting
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ def validate(
     columns: dict[str, str],
     separator: str | None,
     decimal: str | None,
+    caps: Caps,
     form: str,
     **reduction: Any,
 ) -> ExitCode:
@@ -69,7 +71,7 @@ def validate(
     from des_cli.batch.source import load_source, split_source
     from des_cli.reduction.consistency import require_consistent
 
-    stdin = read_stdin(profiles)
+    stdin = read_stdin(profiles, caps)
     codes = set()
     with console.working(len(profiles)) as line:
         sources = [
@@ -81,6 +83,7 @@ def validate(
                 columns=columns,
                 separator=separator,
                 decimal=decimal,
+                caps=caps,
             )
             for name in profiles
         ]

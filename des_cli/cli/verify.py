@@ -16,6 +16,7 @@ from des_cli.cli.source_options import machine_option, read_stdin
 from des_cli.cli.state_options import in_si, state_options
 from des_cli.cli.stdout import write_line
 from des_cli.errors import DesError, ExitCode, Failure
+from des_cli.profiles_in.caps import Caps
 
 if TYPE_CHECKING:
     from des_cli.model.machine import Machine
@@ -32,6 +33,9 @@ STANDING = (
 """What is told of the machine that is to play a table."""
 
 DEFAULT_MACHINE = "des"
+
+LARGEST = Caps(mib=1024)
+"""Table that is read: ten million rows are no ride."""
 
 STARTS = (("arm", "rate"), ("fork", "angle"), ("cab", "angle"))
 """What the first row of a table says."""
@@ -79,7 +83,7 @@ def verify(
 
     given = in_si({name: value for name, value in numbers.items() if value is not None})
     other = None if machine is None else load_machine(machine, "--machine")
-    stdin = read_stdin(targets)
+    stdin = read_stdin(targets, LARGEST)
     codes = [ExitCode.DONE]
     for target in targets:
         try:
@@ -116,7 +120,11 @@ def _verdict(
     if is_run:
         _refuse_of_run(given)
         return check_stored_run(target, machine, start)
-    data = stdin if target == STANDARD_STREAM else read_source(Path(target), target)
+    data = (
+        stdin
+        if target == STANDARD_STREAM
+        else read_source(Path(target), target, LARGEST.mib, pipes=True)
+    )
     assert data is not None, "stdin was read"
     seat = Seat()
     return check_stored_table(

@@ -25,6 +25,10 @@ _SIGNS = {"rad_s": "rad/s", "deg_s": "deg/s"}
 _HOW_TO_NAME = "name those to read with --column NAME=HEADER"
 
 
+_LOOKED_AT = 500
+"""Names among which a misspelt one is looked for; each takes a comparison of its letters."""
+
+
 def nothing_to_fly(header: Header) -> str:
     """Say that a file has no column of any kind of commands."""
     kinds = [f"{kind.words} ({kind.example})" for kind in KINDS]
@@ -99,7 +103,7 @@ def _needed(header: Header, kind: Kind, found: Sequence[Column]) -> Sequence[str
 
 def misspelt(header: Header, stem: str) -> list[str]:
     """Say which names of the file differ from a stem's by their spelling, not by their unit."""
-    for name in header.names:
+    for name in header.names[:_LOOKED_AT]:
         own = read_name(name)
         if own.stem in QUANTITIES or own.unit is None or len(own.stem) < 2:
             continue

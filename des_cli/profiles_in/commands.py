@@ -12,11 +12,14 @@ from pydantic import TypeAdapter, ValidationError
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import mean_of_sides
 from des_cli.model.profile import BodyRates, JointCommands
+from des_cli.profiles_in.caps import DEFAULT_CAPS
 from des_cli.profiles_in.command_schema import Command
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.sampling import (
-    MAX_SAMPLES,
+    FINEST,
+    LONGEST,
     MAX_WORK,
+    SHORTEST_STEP,
     Piece,
     SamplingError,
     Sides,
@@ -45,7 +48,11 @@ _COVER_TOLERANCE = 1e-9
 
 
 def read_time(
-    section: Section, findings: Findings, default: Mapping[str, float] | None = None
+    section: Section,
+    findings: Findings,
+    default: Mapping[str, float] | None = None,
+    *,
+    most_samples: int = DEFAULT_CAPS.rows,
 ) -> tuple[float, float, float] | None:
     """Return start, stop and step [s], or None after saying what is wrong.
 
@@ -55,6 +62,7 @@ def read_time(
     findings : Findings
     default : mapping of str to float, optional
         What those are that are not given [s]; without it each must be.
+    most_samples : int
     """
     default = default or {}
     known = len(findings.complaints)
@@ -72,15 +80,28 @@ def read_time(
         findings.add(["time", str(section.given_key("step"))], "must be greater than 0")
     if len(findings.complaints) > known:
         return None
-    if count_samples(start, stop, step) > MAX_SAMPLES:
-        path = ["time", str(section.given_key("step"))]
-        findings.add(path, f"makes more than {MAX_SAMPLES} samples; give a longer step")
-        return None
-    if start + step == start or stop - step == stop:
-        path = ["time", str(section.given_key("step"))]
-        findings.add(path, "is too short to tell times of this size apart")
-        return None
-    return start, stop, step
+    return checked_grid((start, stop, step), section, findings, most_samples)
+
+
+def checked_grid(
+    grid: tuple[float, float, float], section: Section | None, findings: Findings, most: int
+) -> tuple[float, float, float] | None:
+    """Return start, stop and step [s], or None after saying what no motion is sampled by."""
+    start, stop, step = grid
+    what = ""
+    if stop - start > LONGEST:
+        what = f"lasts longer than {LONGEST:g} s"
+    elif step < SHORTEST_STEP:
+        what = f"must be at least {SHORTEST_STEP:g} s"
+    elif step < FINEST * max(abs(start), abs(stop)):
+        what = "is too short to tell times of this size apart"
+    elif count_samples(start, stop, step) > most:
+        what = f"makes more than {most} samples; give a longer step, or --max-rows"
+    if not what:
+        return grid
+    key = section.given_key("stop" if what.startswith("lasts") else "step") if section else None
+    findings.add(["time", key] if key else (), what)
+    return None
 
 
 def read_commands(

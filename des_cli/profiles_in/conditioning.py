@@ -19,11 +19,11 @@ from des_cli.kinematics.smoothing import why_not_smooth
 from des_cli.model.arrays import Floats, Indices
 from des_cli.model.profile import WASHOUT, GCommand
 from des_cli.profiles_in.attitude import interpolate_attitude
+from des_cli.profiles_in.caps import DEFAULT_CAPS
 from des_cli.profiles_in.column_kinds import QUATERNION, RATES
 from des_cli.profiles_in.conditioning_schema import EulerOrder
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.g_schema import G_STEMS
-from des_cli.profiles_in.sampling import MAX_SAMPLES
 
 OF_SAMPLES = ("gap", "trim", "axes", "resample")
 """Keys that only recorded samples have a use for."""
@@ -197,7 +197,11 @@ def in_seat_axes(
 
 
 def resampled(
-    record: Mapping[str, Floats], conditioning: Conditioning, label: str, remarks: list[str]
+    record: Mapping[str, Floats],
+    conditioning: Conditioning,
+    label: str,
+    remarks: list[str],
+    most_rows: int = DEFAULT_CAPS.rows,
 ) -> dict[str, Floats]:
     """Return a record on a uniform grid from its first time on.
 
@@ -211,6 +215,7 @@ def resampled(
         Columns by their stem, among them ``t`` [s].
     conditioning, label, remarks
         As of `rows_inside`.
+    most_rows : int
 
     Raises
     ------
@@ -220,7 +225,7 @@ def resampled(
     if not conditioning.step:
         return dict(record)
     t = record["t"]
-    grid = _uniform(t, conditioning.step, label)
+    grid = _uniform(t, conditioning.step, label, most_rows)
     others = [stem for stem in record if stem not in ("t", *QUATERNION)]
     found = {"t": grid}
     if set(G_STEMS) & set(record):
@@ -238,11 +243,11 @@ def resampled(
     return found
 
 
-def _uniform(t: Floats, step: float, label: str) -> Floats:
+def _uniform(t: Floats, step: float, label: str, most: int) -> Floats:
     steps = (float(t[-1]) - float(t[0])) / step + _ROUNDING
-    if not 1.0 <= steps < MAX_SAMPLES:
+    if not 1.0 <= steps < most:
         lasts = f"the record lasts {t[-1] - t[0]:.6g} s"
-        what = "fewer than 2" if steps < 1.0 else f"more than {MAX_SAMPLES}"
+        what = "fewer than 2" if steps < 1.0 else f"more than {most}"
         raise _refused(label, "resample.step_s", f"makes {what} samples: {lasts}")
     return np.minimum(t[0] + step * np.arange(int(steps) + 1), t[-1])
 

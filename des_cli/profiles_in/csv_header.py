@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -16,6 +15,11 @@ from des_cli.profiles_in.wording import plain
 
 COMMENT = ("#", "%", "//")
 """How a comment line starts; no number does."""
+
+LONGEST_LINE = 1 << 22
+"""Characters of a line: some 200,000 columns. Each cell takes a hundred bytes of memory."""
+
+_LINE_END = re.compile(r"\r\n?|\n")
 
 
 @dataclass(frozen=True)
@@ -59,6 +63,13 @@ class Header:
         return f"{self.label}:{self.line}"
 
 
+def require_line(line: str, label: str, number: int) -> None:
+    """Refuse a line that is longer than that of any table."""
+    if len(line) > LONGEST_LINE:
+        what = f"is longer than {LONGEST_LINE >> 20} MiB: this is no line of a table"
+        raise ProfileError([Complaint(f"{label}:{number}", what)])
+
+
 def is_comment(line: str) -> bool:
     """Whether a line holds a comment, and neither names nor numbers."""
     return line.lstrip().startswith(COMMENT)
@@ -88,12 +99,12 @@ def split_header(
         If the file is empty, has no header, or is written with another
         separator or decimal sign than expected.
     """
-    lines = _Lines(text)
+    lines = _Lines(text, label)
     separator = lines.pass_declaration() or separator
-    comments = lines.pass_comments()
-    start, line = lines.offset, lines.number + 1
+    comments, last_comment = lines.pass_comments()
+    start, line = lines.place, lines.number + 1
     asked = Dialect(separator or ",", decimal or ".")
-    found = recognise(text[start:], asked.separator, decimal)
+    found = recognise(text[start[0] :], asked.separator, decimal)
     names = _record(lines, found, label)
     if not any(names):
         raise ProfileError(
@@ -102,9 +113,9 @@ def split_header(
     remarks = []
     complaints = [Complaint(f"{label}:{line}", how_to_ask(found, asked))] if found != asked else []
     if any(_is_value(found, name) for name in names) and not {*named} & {*names}:
-        inside = _commented_names(comments[-1:], names, found)
+        inside = _commented_names(last_comment[1], names, found)
         if inside:
-            line, names = comments.pop()[0], inside
+            line, names, comments = last_comment[0], inside, comments - 1
             remarks.append(f"line {line}, a comment, is read as the header")
             lines.back_to(start)
         elif all(_is_value(found, name) for name in names if name):
@@ -115,7 +126,7 @@ def split_header(
         raise ProfileError(complaints)
     units, first, below = _above_the_rows(lines, found, len(names), remarks)
     if comments or below:
-        remarks.append(f"{comment_lines(len(comments) + below)} skipped")
+        remarks.append(f"{comment_lines(comments + below)} skipped")
     rest, above = text[lines.offset :], lines.number
     return Header(label, names, rest, above, line, found, units, first, tuple(remarks))
 
@@ -129,44 +140,61 @@ def _above_the_rows(
     lines: _Lines, dialect: Dialect, width: int, remarks: list[str]
 ) -> tuple[tuple[str, ...], tuple[str, ...], int]:
     """Pass over comments and a row of units; return these, the first row, and the comments."""
-    comments = len(lines.pass_comments(blank_too=False))
-    start, first = lines.offset, _peek(lines, dialect)
+    comments, _ = lines.pass_comments(blank_too=False)
+    start, first = lines.place, _peek(lines, dialect)
     units: tuple[str, ...] = ()
     if _is_row_of_units(dialect, first):
         units = (*first, *[""] * width)[:width]
         remarks.append(f"line {lines.number} is read as a row of units")
-        comments += len(lines.pass_comments(blank_too=False))
-        start, first = lines.offset, _peek(lines, dialect)
+        comments += lines.pass_comments(blank_too=False)[0]
+        start, first = lines.place, _peek(lines, dialect)
     lines.back_to(start)
     return units, tuple(first), comments
+
+
+def lines_of(text: str) -> Iterator[str]:
+    """Iterate over the lines of a text, with their ends; none is held longer than it is used.
+
+    Unlike a stream in memory, which takes four bytes for each character.
+    """
+    start = 0
+    while start < len(text):
+        end = _LINE_END.search(text, start)
+        stop = end.end() if end else len(text)
+        yield text[start:stop]
+        start = stop
 
 
 class _Lines:
     """The lines of a text one by one, with the place that was reached."""
 
-    def __init__(self, text: str) -> None:
-        self._stream = io.StringIO(text, newline="")
+    def __init__(self, text: str, label: str) -> None:
+        self._text = text
+        self._label = label
         self.offset = 0
         self.number = 0
-        self._starts = [0]
 
-    def back_to(self, offset: int) -> None:
+    @property
+    def place(self) -> tuple[int, int]:
+        """Where the next line starts, and how many are before it."""
+        return self.offset, self.number
+
+    def back_to(self, place: tuple[int, int]) -> None:
         """Go back to the start of an earlier line."""
-        self.number = self._starts.index(offset)
-        del self._starts[self.number + 1 :]
-        self.offset = offset
-        self._stream.seek(offset)
+        self.offset, self.number = place
 
     def __iter__(self) -> Iterator[str]:
         return self
 
     def __next__(self) -> str:
-        line = self._stream.readline()
-        if not line:
+        end = _LINE_END.search(self._text, self.offset)
+        stop = end.end() if end else len(self._text)
+        if stop == self.offset:
             raise StopIteration
-        self.offset += len(line)
+        line = self._text[self.offset : stop]
+        self.offset = stop
         self.number += 1
-        self._starts.append(self.offset)
+        require_line(line, self._label, self.number)
         return line
 
     def pass_declaration(self) -> str | None:
@@ -174,20 +202,29 @@ class _Lines:
         line = next(self, "")
         match = re.fullmatch(r'"?sep=(.)"?[;,\t]*\s*', line, re.IGNORECASE)
         if match is None or match[1] not in SEPARATORS:
-            self.back_to(0)
+            self.back_to((0, 0))
             return None
         return match[1]
 
-    def pass_comments(self, *, blank_too: bool = True) -> list[tuple[int, str]]:
-        """Pass over comments, and blank lines if told to; return the comments' numbers and text."""
-        passed: list[tuple[int, str]] = []
-        for line in self:
+    def pass_comments(self, *, blank_too: bool = True) -> tuple[int, tuple[int, str]]:
+        """Pass over comments, and blank lines if told to.
+
+        Returns
+        -------
+        int
+            How many comments there were.
+        (int, str)
+            Number and text of the last one.
+        """
+        count, last = 0, (0, "")
+        while True:
+            before = self.place
+            line = next(self, "")
             if is_comment(line):
-                passed.append((self.number, line.strip()))
-            elif line.strip() or not blank_too:
-                self.back_to(self._starts[-2])
-                break
-        return passed
+                count, last = count + 1, (self.number, line.strip())
+            elif line.strip() or not (line and blank_too):
+                self.back_to(before)
+                return count, last
 
 
 def _record(lines: _Lines, dialect: Dialect, label: str) -> list[str]:
@@ -218,12 +255,9 @@ def _is_row_of_units(dialect: Dialect, cells: Sequence[str]) -> bool:
     )
 
 
-def _commented_names(
-    last: Sequence[tuple[int, str]], values: Sequence[str], dialect: Dialect
-) -> list[str] | None:
+def _commented_names(comment: str, values: Sequence[str], dialect: Dialect) -> list[str] | None:
     """Return the names in the comment right above the numbers, if it is their header."""
-    for _, text in last:
-        names = [name.strip() for name in dialect.split(text.lstrip("#%/").strip())]
-        if len(names) == len(values) > 1 and not any(_is_value(dialect, name) for name in names):
-            return names
+    names = [name.strip() for name in dialect.split(comment.lstrip("#%/").strip())]
+    if len(names) == len(values) > 1 and not any(_is_value(dialect, name) for name in names):
+        return names
     return None

@@ -8,7 +8,6 @@ say what is wrong and where.
 from __future__ import annotations
 
 import csv
-import io
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -18,14 +17,17 @@ import numpy as np
 
 from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
+from des_cli.profiles_in.caps import DEFAULT_CAPS
 from des_cli.profiles_in.clock import is_clock
-from des_cli.profiles_in.csv_header import Header, is_comment
+from des_cli.profiles_in.csv_header import Header, is_comment, lines_of, require_line
 from des_cli.profiles_in.gaps import LONGEST_BRIDGED
-from des_cli.profiles_in.sampling import MAX_SAMPLES
 from des_cli.profiles_in.wording import plain, shown
 
 _WORTH_TELLING = 30
 """Kinds of wrong rows described before the rest is only counted."""
+
+_WORTH_COUNTING = 10_000
+"""Wrong rows left unsaid after which reading stops."""
 
 _LEFT_OUT = (
     f"take out the rows without a number: a gap of up to {LONGEST_BRIDGED:g} s is then bridged, "
@@ -57,6 +59,8 @@ def read_columns(
     places: Sequence[int],
     may_lack: Sequence[int] = (),
     clock: int | None = None,
+    *,
+    most_rows: int = DEFAULT_CAPS.rows,
 ) -> Rows:
     """Read the numbers of some columns.
 
@@ -70,6 +74,7 @@ def read_columns(
     clock : int, optional
         The one of them that may hold times of day or dates; they become not a
         number, and `column_text` has them.
+    most_rows : int
 
     Returns
     -------
@@ -81,10 +86,38 @@ def read_columns(
         With every row that is not as long as the header or holds something
         else than finite numbers; what is wrong alike on many rows is one line.
     """
+    require_few_rows(header.text.count("\n"), header.label, most_rows)
+    _require_end(header, places)
     rows = _read_fast(header, places)
     if rows is None:
-        rows = _read_slowly(header, places, [place in may_lack for place in places], clock)
+        optional = [place in may_lack for place in places]
+        rows = _read_slowly(header, places, optional, clock, most_rows)
     return rows
+
+
+def require_few_rows(rows: int, label: str, most: int) -> None:
+    """Refuse a file before its numbers are made, which take more memory than its text."""
+    if rows > most:
+        what = f"has more than {most} rows; --max-rows reads more"
+        raise ProfileError([Complaint(label, what)])
+
+
+def _require_end(header: Header, places: Sequence[int]) -> None:
+    """Refuse a last line that does not end where its last number is read.
+
+    Such a file may have been cut inside the number: 0.0 of 0.0125 is a number too.
+    """
+    if not header.text or header.text.endswith(("\n", "\r")):
+        return
+    start = max(header.text.rfind("\n"), header.text.rfind("\r")) + 1
+    cells = header.dialect.split(header.text[start:])
+    if len(cells) - 1 in places and header.dialect.is_number(cells[-1]):
+        line = header.lines + header.text.count("\n") + 1
+        what = (
+            f"{plain(header.names[len(cells) - 1])}: the last line does not end, and may have been "
+            f"cut inside its number {shown(cells[-1].strip())}: end the line, or take it out"
+        )
+        raise ProfileError([Complaint(f"{header.label}:{line}", what)])
 
 
 def column_text(header: Header, place: int) -> list[str]:
@@ -104,19 +137,23 @@ def _read_fast(header: Header, places: Sequence[int]) -> Rows | None:
         body = body.replace(",", ".")
     delimiter = None if separator == " " else separator
     try:
-        values = np.loadtxt(io.StringIO(body), delimiter=delimiter, comments=None, ndmin=2)
+        values = np.loadtxt(lines_of(body), delimiter=delimiter, comments=None, ndmin=2)
     except ValueError:
         return None
     if values.shape != (body.count("\n") + 1, len(header.names)):
         return None
     chosen = np.ascontiguousarray(values[:, places])
-    if not np.isfinite(chosen).all() or len(chosen) > MAX_SAMPLES:
+    if not np.isfinite(chosen).all():
         return None
     return Rows(chosen, range(header.lines + 1, header.lines + 1 + len(chosen)))
 
 
 def _read_slowly(
-    header: Header, places: Sequence[int], may_lack: Sequence[bool], clock: int | None
+    header: Header,
+    places: Sequence[int],
+    may_lack: Sequence[bool],
+    clock: int | None,
+    most_rows: int,
 ) -> Rows:
     complaints = _ByWords(header.label)
     records = _Records(header, complaints)
@@ -138,12 +175,12 @@ def _read_slowly(
                 row.append(math.nan)
                 continue
             complaints.add(line, cell_complaint(place, cell))
+        if complaints.many:
+            break
         if not complaints:
             values.append(row)
             lines.append(line)
-            if len(values) > MAX_SAMPLES:
-                what = f"has more than {MAX_SAMPLES} rows"
-                raise ProfileError([Complaint(header.label, what)])
+            require_few_rows(len(values), header.label, most_rows)
     found = complaints.complaints()
     if not values and not found:
         found.append(Complaint(header.label, "has a header but no rows"))
@@ -163,6 +200,11 @@ class _ByWords:
     def __bool__(self) -> bool:
         return bool(self._found)
 
+    @property
+    def many(self) -> bool:
+        """Whether so many kinds were left unsaid that nobody needs the exact number."""
+        return self._unsaid >= _WORTH_COUNTING
+
     def add(self, line: int, what: str) -> None:
         """Add what is wrong with a row."""
         if what in self._found:
@@ -181,7 +223,8 @@ class _ByWords:
             for what, (line, count) in self._found.items()
         ]
         if self._unsaid:
-            words = f"… and {self._unsaid} more cells or rows like these"
+            count = f"{self._unsaid} or more" if self.many else f"{self._unsaid} more"
+            words = f"… and {count} cells or rows like these"
             said.append(Complaint(self._label, words))
         return said
 
@@ -205,8 +248,9 @@ class _Records:
 
     def _lines(self) -> Iterator[str]:
         """Iterate over the lines; what starts inside a quoted cell is no comment."""
-        for line in io.StringIO(self._header.text, newline=""):
+        for line in lines_of(self._header.text):
             self._line += 1
+            require_line(line, self._header.label, self._line)
             if self._fresh and is_comment(line):
                 self.comments += 1
                 continue

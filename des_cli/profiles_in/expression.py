@@ -40,6 +40,8 @@ _CHUNK = 1 << 15
 """Samples evaluated at once: bounds the memory of a deep expression."""
 
 _ALLOWED_TEXT = re.compile(r"[0-9A-Za-z_.+\-*/(),\s]")
+_NUMBER_LIKE = re.compile(r"(?<![\w.])\.?[0-9]\w*(?:\.\w*)?(?:(?<=[eE])[+-]\w+)?")
+_NUMBER = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _CONSTANTS = {"pi": math.pi, "e": math.e}
 
 
@@ -160,6 +162,10 @@ def parse_expression(text: str, *, variable: bool = True) -> Expression:
         if not (character.isascii() and _ALLOWED_TEXT.match(character)):
             hint = " (a power is written **)" if character == "^" else ""
             raise ExpressionError(f"has an unexpected {shown(character)}{hint}")
+    for match in _NUMBER_LIKE.finditer(text):
+        # Python's own spellings, as 1_000 and 0x10, stand in no table of commands.
+        if not _NUMBER.fullmatch(match[0]):
+            raise ExpressionError(f"has {shown(match[0])}, which is no number in plain notation")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Python's advice on its own syntax
@@ -218,6 +224,8 @@ def _called(name: str, args: list[_Function]) -> _Function:
 def _named(name: str, names: set[str]) -> _Function:
     if name not in names:
         hint = did_you_mean(name, names | set(FUNCTIONS))
+        if name in FUNCTIONS:
+            raise ExpressionError(f"has {name} without its arguments: {name}(…)")
         raise ExpressionError(f"has an unknown name {shown(name)}{hint}")
     return _constant(_CONSTANTS[name]) if name in _CONSTANTS else lambda t, side: t
 

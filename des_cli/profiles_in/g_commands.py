@@ -9,7 +9,14 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.profile import WASHOUT, BodyRates, GCommand
-from des_cli.profiles_in.commands import covers, largest_size, read_time, sample_body_rates
+from des_cli.profiles_in.caps import DEFAULT_CAPS
+from des_cli.profiles_in.commands import (
+    checked_grid,
+    covers,
+    largest_size,
+    read_time,
+    sample_body_rates,
+)
 from des_cli.profiles_in.expression import constant_expression, parse_expression
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.g_schema import G_STEMS, MOST_G, RATE_STEMS, Onset
@@ -32,7 +39,9 @@ STEP = 0.02
 recorded one: what lies between its rows is a straight line in G, and none in the joints."""
 
 
-def read_g(section: Section, time: Any, findings: Findings) -> tuple[Floats, GCommand] | None:
+def read_g(
+    section: Section, time: Any, findings: Findings, *, most_samples: int = DEFAULT_CAPS.rows
+) -> tuple[Floats, GCommand] | None:
     """Sample a ``g:`` section.
 
     Parameters
@@ -43,6 +52,7 @@ def read_g(section: Section, time: Any, findings: Findings) -> tuple[Floats, GCo
         The ``time:`` section; what it does not say follows from the onsets.
     findings : Findings
         Takes what is wrong.
+    most_samples : int
 
     Returns
     -------
@@ -52,7 +62,7 @@ def read_g(section: Section, time: Any, findings: Findings) -> tuple[Floats, GCo
     values = {stem: getattr(section, f"{stem}_g") for stem in G_STEMS}
     given = {stem: value for stem, value in values.items() if value is not None}
     _check_whole(section, given, findings)
-    grid = _read_time(list(given.values()), time, findings)
+    grid = _read_time(list(given.values()), time, findings, most_samples)
     if grid is None or not given:
         return None
     start, stop, _ = grid
@@ -165,7 +175,7 @@ def _check_whole(section: Section, given: Mapping[str, Any], findings: Findings)
 
 
 def _read_time(
-    values: list[Any], time: Any, findings: Findings
+    values: list[Any], time: Any, findings: Findings, most_samples: int
 ) -> tuple[float, float, float] | None:
     """Return start, stop and step [s]; the stop is where the last onset ends."""
     start = time.si("start") if time is not None else 0.0
@@ -178,8 +188,8 @@ def _read_time(
         findings.add((), what)
         return None
     if time is None:
-        return 0.0, default["stop"], STEP
-    return read_time(time, findings, default)
+        return checked_grid((0.0, default["stop"], STEP), None, findings, most_samples)
+    return read_time(time, findings, default, most_samples=most_samples)
 
 
 def _is_onsets(value: Any) -> bool:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from des_cli.errors import Complaint, ProfileError, UsageError
 from des_cli.model.profile import Profile
+from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
 from des_cli.profiles_in.findings import Findings, bounded
 from des_cli.profiles_in.gaps import GapHandling
 from des_cli.profiles_in.profile_csv import parse_samples
@@ -37,6 +38,7 @@ def load_profile(
     part: int | None = None,
     separator: str | None = None,
     decimal: str | None = None,
+    caps: Caps = DEFAULT_CAPS,
 ) -> Profile:
     """Read and check a profile.
 
@@ -44,7 +46,7 @@ def load_profile(
     ----------
     source : str or Path
         A ``.yaml``, ``.yml`` or ``.csv`` file, ``-`` for standard input, or
-        the name of a built-in maneuver where no such file exists. Other files
+        the name of a built-in maneuver; a Path is always a file. Other files
         and standard input are YAML or CSV by what they hold.
     settings : sequence of str or Setting
         ``--set`` strings: ``reduction.r2=0.2``, ``joints.arm_rpm[1].to_s=4``; or values of
@@ -72,7 +74,7 @@ def load_profile(
         If a file cannot be read.
     """
     gaps = GapHandling(part=part)
-    file = ProfileFile.read(source, stdin)
+    file = ProfileFile.read(source, stdin, caps)
     return parse_file(file, settings, dict(columns or {}), gaps, separator, decimal)
 
 
@@ -84,16 +86,17 @@ def count_parts(
     stdin: bytes | None = None,
     separator: str | None = None,
     decimal: str | None = None,
+    caps: Caps = DEFAULT_CAPS,
 ) -> int:
     """Return how many profiles a source holds: with ``gap: split`` one a stretch between gaps.
 
     Parameters
     ----------
-    source, settings, columns, stdin, separator, decimal
+    source, settings, columns, stdin, separator, decimal, caps
         As of `load_profile`, whose errors this raises too, but only where there is
         something to split.
     """
-    file = ProfileFile.read(source, stdin)
+    file = ProfileFile.read(source, stdin, caps)
     asked = any(_SPLIT in str(setting) for setting in settings)
     # The word has to stand somewhere: a long table need not be read to know that.
     if not asked and _SPLIT.encode() not in file.data:
@@ -115,7 +118,7 @@ def parse_file(
 ) -> Profile:
     """Make a profile of its bytes; arguments and errors are those of `load_profile`."""
     path, label, data = file.path, file.label, file.data
-    text, remarks = file.table
+    text, remarks_of_text = file.table
     folder = path.parent if path else Path()
     digest = hashlib.sha256(data)
     given = {"separator": separator, "decimal": decimal}
@@ -129,7 +132,8 @@ def parse_file(
         digest.update(json.dumps(options).encode())
     if gaps.part is not None:
         digest.update(f"part {gaps.part}".encode())
-    reading = Reading(label, folder, digest, gaps=gaps, remarks=[*remarks])
+    remarks = [*file.remarks, *remarks_of_text]
+    reading = Reading(label, folder, digest, gaps=gaps, remarks=remarks, caps=file.caps)
     name = name_of_file(path)
     try:
         if file.is_yaml:
@@ -177,6 +181,7 @@ def _load_csv(
             conditioning=reading.conditioning,
             gaps=reading.gaps,
             remarks=reading.remarks,
+            most_rows=reading.caps.rows,
         )
 
     document, findings = parse_settings(settings, reading.label)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from des_cli.model.machine import Machine
 from des_cli.model.machines import MACHINES
+from des_cli.profiles_in.caps import DEFAULT_CAPS
 from des_cli.profiles_in.findings import Findings
 from des_cli.profiles_in.machine_yaml import (
     is_machine_file,
@@ -39,7 +40,9 @@ def load_machine(choice: str, option: str) -> Machine:
         return MACHINES[choice]
     if is_machine_file(choice):
         label = label_of(choice)
-        return parse_machine(decode(read_source(Path(choice), label), label), label)
+        return parse_machine(
+            decode(read_source(Path(choice), label, DEFAULT_CAPS.mib), label), label
+        )
     findings = Findings(Node(option, {}))
     machine = named_machine(choice, (), findings)
     findings.raise_if_any()

@@ -11,7 +11,7 @@ from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE
 from des_cli.profiles_in.machine_yaml import is_machine_file
 from des_cli.profiles_in.setting import AnySetting
 from des_cli.profiles_in.wording import plain, shown
-from des_cli.profiles_in.yaml_nodes import Node, Step, node_of, parse_yaml, path_text
+from des_cli.profiles_in.yaml_nodes import MAX_DEPTH, Node, Step, node_of, parse_yaml, path_text
 from des_cli.units import split_unit
 
 OPTION = "--"
@@ -82,9 +82,11 @@ def parse_path(name: str, label: str) -> list[Step]:
     Raises
     ------
     ProfileError
-        If it is not a path of names and indices.
+        If it is not a path of names and indices, or deeper than any key.
     """
     path: list[Step] = []
+    if name.count(".") + name.count("[") >= MAX_DEPTH:
+        raise _rejected(label, f"is a path of more than {MAX_DEPTH} levels")
     for part in name.split("."):
         match = _STEP.fullmatch(part)
         if not match:

@@ -11,11 +11,12 @@ from des_cli.model.arrays import Floats
 from des_cli.model.profile import BodyRates, GCommand, JointCommands
 from des_cli.profiles_in.angles import sudden_steps, unwrap
 from des_cli.profiles_in.attitude import flown_attitude, rows_with_attitude, with_quaternions
+from des_cli.profiles_in.caps import DEFAULT_CAPS
 from des_cli.profiles_in.column_kinds import EULER, JOINTS, QUATERNION, RATES, Column
 from des_cli.profiles_in.columns import choose_columns
 from des_cli.profiles_in.conditioning import Conditioning, in_seat_axes, resampled, rows_inside
 from des_cli.profiles_in.csv_header import Header, comment_lines, split_header
-from des_cli.profiles_in.csv_table import Rows, read_columns
+from des_cli.profiles_in.csv_table import Rows, read_columns, require_few_rows
 from des_cli.profiles_in.g_commands import STEP, sampled_g
 from des_cli.profiles_in.g_schema import G_STEMS
 from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
@@ -24,6 +25,9 @@ from des_cli.profiles_in.rates_of_positions import joint_commands_of_samples
 from des_cli.profiles_in.record_checks import check_magnitudes, check_times, tell_doubtful_units
 from des_cli.profiles_in.sample_times import sample_times
 from des_cli.profiles_in.wording import plain
+
+_LINES_ABOVE = 1000
+"""Lines that may stand above the rows, before these are counted exactly."""
 
 _TOLD = 20
 """Jumps described."""
@@ -39,6 +43,7 @@ def parse_samples(
     conditioning: Conditioning | None = None,
     gaps: GapHandling | None = None,
     remarks: list[str] | None = None,
+    most_rows: int = DEFAULT_CAPS.rows,
 ) -> tuple[Floats, JointCommands | BodyRates | GCommand]:
     """Read joint commands, body rates, an attitude or an asked G from the text of a CSV file.
 
@@ -59,6 +64,8 @@ def parse_samples(
     remarks : list of str, optional
         Takes sentences on what was done to read the file, and on what was
         changed of the record.
+    most_rows : int
+        Of the file, and of what it is resampled to.
 
     Returns
     -------
@@ -72,6 +79,7 @@ def parse_samples(
     ProfileError
         With everything that is wrong.
     """
+    require_few_rows(max(text.count("\n"), text.count("\r")) - _LINES_ABOVE, label, most_rows)
     conditioning = conditioning or Conditioning()
     remarks = [] if remarks is None else remarks
     header = split_header(text, label, separator, decimal, columns.values())
@@ -81,7 +89,7 @@ def parse_samples(
     chosen = choose_columns(header, columns, complaints, said, euler=euler)
     if complaints:
         raise ProfileError(complaints)
-    table, by_stem = _read(header, chosen, complaints, said)
+    table, by_stem = _read(header, chosen, most_rows, complaints, said)
     if complaints:
         raise ProfileError(complaints)
     remarks += said
@@ -111,7 +119,7 @@ def parse_samples(
     stretch = select_rows(by_stem["t"], label, line, gaps, said, straight=by_lines)
     remarks += said
     by_stem = {stem: column[stretch] for stem, column in by_stem.items()}
-    by_stem = resampled(by_stem, conditioning, label, remarks)
+    by_stem = resampled(by_stem, conditioning, label, remarks, most_rows)
     if flies_attitude:
         return flown_attitude(by_stem, remarks)
     t = by_stem["t"]
@@ -131,16 +139,22 @@ def parse_samples(
 
 
 def _read(
-    header: Header, chosen: list[Column], complaints: list[Complaint], remarks: list[str]
+    header: Header,
+    chosen: list[Column],
+    most_rows: int,
+    complaints: list[Complaint],
+    remarks: list[str],
 ) -> tuple[Rows, dict[str, Floats]]:
     """Return the rows of the file, and the columns in SI by their stems."""
     time = next(column for column in chosen if column.stem == "t")
     may_lack = [column.place for column in chosen if column.stem in (*QUATERNION, *EULER)]
-    rows = read_columns(header, [column.place for column in chosen], may_lack, time.place)
-    by_stem = {
-        column.stem: rows.values[:, index] * (column.unit.to_si if column.unit else 1.0)
-        for index, column in enumerate(chosen)
-    }
+    places = [column.place for column in chosen]
+    rows = read_columns(header, places, may_lack, time.place, most_rows=most_rows)
+    with np.errstate(over="ignore"):  # what is infinite is beyond any machine
+        by_stem = {
+            column.stem: rows.values[:, index] * (column.unit.to_si if column.unit else 1.0)
+            for index, column in enumerate(chosen)
+        }
     if rows.comments:
         remarks.append(f"{comment_lines(rows.comments)} skipped between the rows")
     recorded = rows.values[:, chosen.index(time)]

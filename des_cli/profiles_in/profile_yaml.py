@@ -15,6 +15,7 @@ from des_cli.errors import DesError, ProfileError
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Machine, Seat
 from des_cli.model.profile import BodyRates, GCommand, JointCommands, Profile
+from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
 from des_cli.profiles_in.commands import check_commands, read_commands, read_time
 from des_cli.profiles_in.conditioning import (
     Conditioning,
@@ -67,6 +68,8 @@ class Reading:
         What is done where samples are missing.
     remarks : list of str
         Takes sentences for the user on what was done to read it.
+    caps : Caps
+        The most that is read.
     """
 
     label: str
@@ -75,6 +78,7 @@ class Reading:
     conditioning: Conditioning = field(default_factory=Conditioning)
     gaps: GapHandling = field(default_factory=GapHandling)
     remarks: list[str] = field(default_factory=list)
+    caps: Caps = DEFAULT_CAPS
 
     def referred(self, name: str, place: str) -> tuple[str, bytes]:
         """Return label and content of a file that the profile refers to.
@@ -88,7 +92,7 @@ class Reading:
         """
         path = Path(name) if place.startswith(OPTION) else self.folder / name
         label = label_of(path)
-        data = read_source(path, label)
+        data = read_source(path, label, self.caps.mib)
         self.digest.update(hashlib.sha256(data).digest())
         return label, data
 
@@ -305,10 +309,16 @@ def document_commands(
         refuse_beside_expressions(present, given[0], findings)
     if given == ["g"]:
         usable = sections["g"] is not None and ("time" not in present or sections["time"])
-        return read_g(sections["g"], sections["time"], findings) if usable else None
+        if not usable:
+            return None
+        return read_g(sections["g"], sections["time"], findings, most_samples=reading.caps.rows)
     if "time" not in present:
         findings.add((), "time is missing: give time: {start_s: …, stop_s: …, step_s: …}")
-    time = None if sections["time"] is None else read_time(sections["time"], findings)
+    time = (
+        None
+        if sections["time"] is None
+        else read_time(sections["time"], findings, most_samples=reading.caps.rows)
+    )
     if time is None or len(given) != 1:
         return None
     section, name = sections[given[0]], given[0]
@@ -334,4 +344,5 @@ def _sampled(section: Any, reading: Reading, findings: Findings) -> Commands:
         conditioning=reading.conditioning,
         gaps=reading.gaps,
         remarks=reading.remarks,
+        most_rows=reading.caps.rows,
     )

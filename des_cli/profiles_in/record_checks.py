@@ -13,7 +13,7 @@ from des_cli.profiles_in.csv_header import Header
 from des_cli.profiles_in.csv_table import Rows
 from des_cli.profiles_in.g_schema import MOST_G
 from des_cli.profiles_in.sample_times import SampleTimes
-from des_cli.profiles_in.sampling import MAX_MAGNITUDE
+from des_cli.profiles_in.sampling import LONGEST, MAX_MAGNITUDE, SHORTEST_STEP
 from des_cli.profiles_in.wording import option, plain
 from des_cli.units import STANDARD_GRAVITY_M_S2
 
@@ -33,7 +33,8 @@ def check_times(
         what = "has one row; a motion needs two or more"
         complaints.append(Complaint(header.label, what))
         return
-    step = np.diff(times.t)
+    with np.errstate(over="ignore", invalid="ignore"):
+        step = np.diff(times.t)
     late = np.flatnonzero(~(step > 0))
     name = plain(column.in_file)
     for index in late[:_TOLD].tolist():
@@ -52,6 +53,24 @@ def check_times(
     if len(late) > _TOLD:
         what = f"… and {len(late) - _TOLD} more times like these"
         complaints.append(Complaint(header.label, what))
+    if not len(late):
+        _check_lengths(header, name, times, rows, complaints)
+
+
+def _check_lengths(
+    header: Header, name: str, times: SampleTimes, rows: Rows, complaints: list[Complaint]
+) -> None:
+    """Say where times are so far apart, or so near, that their unit must be another."""
+    lasts = float(times.t[-1]) - float(times.t[0])
+    if lasts > LONGEST:
+        what = f"the record lasts {lasts:.3g} s, longer than {LONGEST:g} s: correct its unit"
+        complaints.append(Complaint(header.where, f"{name}: {what}"))
+        return
+    step = np.diff(times.t)
+    if np.median(step) < SHORTEST_STEP:
+        row = int(np.argmin(step))
+        what = f"a step of {step[row]:.3g} s is shorter than {SHORTEST_STEP:g} s: correct its unit"
+        complaints.append(Complaint(f"{header.label}:{rows.lines[row + 1]}", f"{name}: {what}"))
 
 
 def check_magnitudes(

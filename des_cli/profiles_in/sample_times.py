@@ -70,7 +70,8 @@ def sample_times(
     if np.isnan(recorded).any():
         return _clock_times(header, column, recorded, rows, complaints, remarks)
     assert column.unit is not None, "a column of numbers was chosen by its unit"
-    t = recorded * column.unit.to_si
+    with np.errstate(over="ignore"):  # what is infinite is too long
+        t = recorded * column.unit.to_si
     if np.max(np.abs(t)) < LARGE:
         return SampleTimes(t, recorded)
     cells = column_text(header, column.place)

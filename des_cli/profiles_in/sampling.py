@@ -15,8 +15,15 @@ from des_cli.profiles_in.dual import Side
 from des_cli.profiles_in.expression import Expression, constant_expression
 from des_cli.profiles_in.sections import Section
 
-MAX_SAMPLES = 5_000_000
-"""Samples of a profile; 1 kHz for an hour and more."""
+LONGEST = 1e7
+"""Longest profile [s], a hundred days and more: what is longer was meant in another unit."""
+
+SHORTEST_STEP = 1e-9
+"""Shortest step [s]: a jerk over a shorter one is no number to compare with a limit."""
+
+FINEST = 1e-12
+"""Shortest step over the largest time: what a shorter one changes is rounding for the most
+part."""
 
 MAX_WORK = 400_000_000
 """Samples times operations of an expression: some seconds of arithmetic."""

@@ -39,15 +39,26 @@ from des_cli.profiles_in.wording import shown
 from des_cli.units import suffixes
 
 _NAME = re.compile(r"\w([\w .,+()-]{0,98}[\w)+])?")
+_NAME_BYTES = 200
+"""A folder's name has room for 255, and what is added while it is built."""
+
+_RESERVED = re.compile(r"(con|prn|aux|nul|(com|lpt)[0-9¹²³])(?: *\..*)?", re.IGNORECASE)
 
 
 def _check_name(name: str) -> str:
-    if not _NAME.fullmatch(name):
+    if not _NAME.fullmatch(name) or len(name.encode()) > _NAME_BYTES:
         raise fault(
             "must be 1 to 100 letters, digits, spaces and . , + - _ ( ), "
             f"for a folder is named after it; it is {shown(name)}"
         )
+    if is_reserved(name):
+        raise fault(f"is a device and no folder on Windows: {shown(name)}")
     return name
+
+
+def is_reserved(name: str) -> bool:
+    """Whether Windows takes a name for a device, in whatever case and with any ending."""
+    return _RESERVED.fullmatch(name) is not None
 
 
 def _in_words(parse: Callable[[str], str]) -> Callable[[str], str]:

@@ -198,6 +198,10 @@ class Section(BaseModel):
         return section
 
 
+_HINTS = 50
+"""Unknown keys of a section for which the one that may be meant is looked for."""
+
+
 def _property(key: str, schema: Any, measure: Measure | None) -> Any:
     """Return the schema of a key from that of its field."""
     if measure is None:
@@ -207,16 +211,16 @@ def _property(key: str, schema: Any, measure: Measure | None) -> Any:
 
 
 def _unknown_keys(section: type[Section], data: dict[str, Any]) -> Iterable[tuple[str, str]]:
-    for key in data:
-        if key in section.known_keys():
-            continue
+    unknown = [key for key in data if key not in section.known_keys()]
+    for count, key in enumerate(unknown):
         match = [measure for measure in section.measures if _tries(key, measure)]
         if key in section.elsewhere:
             yield key, section.elsewhere[key]
         elif match:
             yield key, f"{match[0].title} needs its unit in the key: {one_of(match[0].keys)}"
         else:
-            hint = did_you_mean(key, section.known_keys())
+            # Each takes a comparison of letters, and nobody reads more of them.
+            hint = did_you_mean(key, section.known_keys()) if count < _HINTS else ""
             yield key, f"is not a key here{hint or f'; there are {_some(section.known_keys())}'}"
 
 

@@ -6,38 +6,91 @@ import codecs
 import os
 import stat
 from pathlib import Path
+from typing import BinaryIO
 
 from des_cli.errors import Complaint, FileAccessError, ProfileError
 from des_cli.profiles_in.wording import plain
 
-MAX_BYTES = 1 << 30
-"""Longest file read; five million rows of eight columns are shorter."""
+STDIN_LABEL = "<stdin>"
+
+_OPEN = os.O_RDONLY | sum(
+    getattr(os, flag, 0) for flag in ("O_BINARY", "O_CLOEXEC", "O_NOCTTY", "O_NONBLOCK")
+)
+"""Opening waits for nobody, and makes no terminal that of this process."""
 
 
-def read_source(path: Path, label: str) -> bytes:
-    """Return the content of a regular file or a pipe.
+def read_source(path: Path, label: str, mib: int | None, *, pipes: bool = False) -> bytes:
+    """Return the content of a regular file, or of a pipe that is being written.
+
+    Neither opening nor reading waits for what may never come: a pipe without a writer is
+    refused. One with a writer is waited for, as standard input is.
+
+    Parameters
+    ----------
+    path : Path
+    label : str
+        What messages call it.
+    mib : int or None
+        The most that is read [2^20 bytes].
+    pipes : bool
+        Whether it may be a pipe: where the user gave the name, and no file did.
 
     Raises
     ------
     FileAccessError
         If there is no such file, it is a folder or a device, it cannot be
-        read, or it is longer than 1 GiB.
+        read, or it is too long.
     """
     try:
-        mode = os.stat(path).st_mode
-        if stat.S_ISDIR(mode):
-            raise _refused(label, "is a folder, not a file")
-        if not (stat.S_ISREG(mode) or stat.S_ISFIFO(mode)):
-            raise _refused(label, "is a device, not a file")
-        with open(path, "rb") as file:
-            data = file.read(MAX_BYTES + 1)
+        # Looked at before it is opened, which alone moves some devices, and again afterwards,
+        # when no other can take its place any more.
+        _require_kind(os.stat(path).st_mode, label, pipes=pipes)
+        with open(os.open(path, _OPEN), "rb") as file:
+            mode = os.fstat(file.fileno()).st_mode
+            _require_kind(mode, label, pipes=pipes)
+            start = _first_of_pipe(file.fileno(), label) if stat.S_ISFIFO(mode) else b""
+            return start + read_stream(file, label, mib)
     except (OSError, ValueError) as error:
         # A name with a NUL byte raises ValueError.
         words = getattr(error, "strerror", None) or "is not a file name"
         raise _refused(label, f"cannot be read: {words}") from None
-    if len(data) > MAX_BYTES:
-        raise _refused(label, f"is larger than {MAX_BYTES >> 30} GiB")
+
+
+def read_stream(stream: BinaryIO, label: str, mib: int | None) -> bytes:
+    """Return what is left of a stream; it is read no further than to see that it is too long.
+
+    Raises
+    ------
+    FileAccessError
+        If it is longer than ``mib`` [2^20 bytes].
+    """
+    if mib is None:
+        return stream.read()
+    data = stream.read((mib << 20) + 1)
+    if len(data) > mib << 20:
+        raise _refused(label, f"is larger than {mib} MiB; --max-mib reads more")
     return data
+
+
+def _require_kind(mode: int, label: str, *, pipes: bool) -> None:
+    if stat.S_ISDIR(mode):
+        raise _refused(label, "is a folder, not a file")
+    if stat.S_ISFIFO(mode) and not pipes:
+        raise _refused(label, "is a pipe, not a file")
+    if not (stat.S_ISREG(mode) or stat.S_ISFIFO(mode)):
+        raise _refused(label, "is a device, not a file")
+
+
+def _first_of_pipe(descriptor: int, label: str) -> bytes:
+    """Return the first byte of a pipe if it is there already, and let the next ones be awaited."""
+    try:
+        first = os.read(descriptor, 1)
+    except BlockingIOError:
+        first = None  # there is a writer, which has not written yet
+    if first == b"":
+        raise _refused(label, "is a pipe that nobody writes to; pipe into '-' instead")
+    os.set_blocking(descriptor, True)
+    return first or b""
 
 
 def decode(data: bytes, label: str) -> str:

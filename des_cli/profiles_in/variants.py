@@ -8,6 +8,7 @@ from pathlib import Path
 
 from des_cli.errors import DesError, ProfileError
 from des_cli.model.profile import Profile, Reduction
+from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
 from des_cli.profiles_in.findings import bounded
 from des_cli.profiles_in.gaps import GapHandling
 from des_cli.profiles_in.load import parse_file
@@ -29,12 +30,13 @@ def load_variants(
     part: int | None = None,
     separator: str | None = None,
     decimal: str | None = None,
+    caps: Caps = DEFAULT_CAPS,
 ) -> list[Profile | DesError]:
     """Read a profile with further settings of its reduction, several times over.
 
     Parameters
     ----------
-    source, settings, columns, stdin, part, separator, decimal
+    source, settings, columns, stdin, part, separator, decimal, caps
         As of `load_profile`.
     variants : sequence of sequence of str or Setting
         At least one; settings of keys of ``reduction``, and of no others.
@@ -51,7 +53,7 @@ def load_variants(
     FileAccessError
         If the file cannot be read.
     """
-    file = ProfileFile.read(source, stdin)
+    file = ProfileFile.read(source, stdin, caps)
     gaps = GapHandling(part=part)
     first, *others = ([*settings, *further] for further in variants)
     try:

@@ -2,8 +2,8 @@
 
 Built from the parser's events rather than with a loader, so that the rules are
 the project's own: YAML 1.2 scalars (``1e-3`` is a number; ``no`` and ``1:30``
-are text), no repeated keys, no tags, one document, and aliases that cannot
-multiply without bound.
+are text), no repeated keys, no tags, anchors, aliases or merge keys, and one
+document. What is read stands in the file where it counts, and is as large as the file.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from ruamel.yaml.events import (
 from des_cli.errors import Complaint, ProfileError
 from des_cli.profiles_in.wording import plain, shown
 
-MAX_BYTES = 1 << 19
+MAX_BYTES = 1 << 18
 """Longest YAML text read; recorded samples belong in a CSV file."""
 
-MAX_NODES = 50_000
-"""Values in a file, each alias counted as everything that it stands for."""
+MAX_NODES = 20_000
+"""Values in a file."""
 
 MAX_DEPTH = 20
 """Levels of nesting; a profile has five."""
@@ -64,14 +64,11 @@ class Node:
     value : scalar, dict of str to Node, or list of Node
     key_places : dict of str to str
         Where each key of a mapping stands.
-    size : int
-        Number of values in it, itself included.
     """
 
     place: str
     value: Scalar | dict[str, Node] | list[Node]
     key_places: dict[str, str] = field(default_factory=dict)
-    size: int = 1
 
     def children(self) -> Iterator[tuple[Step, Node]]:
         """Iterate over the members of a mapping or list with their key or index."""
@@ -79,6 +76,14 @@ class Node:
             yield from self.value.items()
         elif isinstance(self.value, list):
             yield from enumerate(self.value)
+
+    def child(self, step: Step) -> Node | None:
+        """Return a member of a mapping or list by its key or index, or None."""
+        if isinstance(self.value, dict):
+            return self.value.get(step) if isinstance(step, str) else None
+        if isinstance(self.value, list) and isinstance(step, int) and step < len(self.value):
+            return self.value[step]
+        return None
 
     def plain(self) -> Any:
         """Return the value as plain dictionaries, lists and scalars."""
@@ -99,7 +104,7 @@ class Node:
         """
         node, key_place = self, self.place
         for step in path:
-            following = dict(node.children()).get(step)
+            following = node.child(step)
             if following is None:
                 return node.place
             key_place = node.key_places.get(str(step), following.place)
@@ -197,9 +202,8 @@ class _Builder:
     def __init__(self, label: str) -> None:
         self.label = label
         self.root: Node | None = None
-        self.open: list[tuple[Node, str | None]] = []
+        self.open: list[Node] = []
         self.key: tuple[str, str] | None = None
-        self.anchors: dict[str, Node] = {}
         self.documents = 0
         self.nodes = 0
         self.complaints: list[Complaint] = []
@@ -212,21 +216,23 @@ class _Builder:
             self.documents += 1
             if self.documents > 1:
                 raise _rejected(place, "a second document starts; keep one profile a file")
+            if event.version not in (None, (1, 2)):
+                version = ".".join(map(str, event.version))
+                raise _rejected(place, f"is YAML {version}, which reads no as false; use 1.2")
         elif isinstance(event, NodeEvent):
             self._take_node(event, place)
         elif type(event).__name__ in ("MappingEndEvent", "SequenceEndEvent"):
-            node, anchor = self.open.pop()
-            node.size = 1 + sum(child.size for _, child in node.children())
-            if anchor:
-                self.anchors[anchor] = node
+            self.open.pop()
 
     def _take_node(self, event: Any, place: str) -> None:
         tag = getattr(event, "tag", None)
         if tag is not None and str(tag) != "!":
             raise _rejected(place, f"the tag {shown(str(tag))} is not accepted; give plain values")
-        if isinstance(event, AliasEvent):
-            self._take_alias(str(event.anchor), place)
-        elif isinstance(event, ScalarEvent):
+        if event.anchor is not None:
+            sign = "alias *" if isinstance(event, AliasEvent) else "anchor &"
+            what = f"the {sign}{plain(str(event.anchor))} is not accepted; write the value out"
+            raise _rejected(place, what)
+        if isinstance(event, ScalarEvent):
             self._take_scalar(event, place, quoted=event.style is not None or tag is not None)
         else:
             empty: dict[str, Node] | list[Node]
@@ -236,33 +242,25 @@ class _Builder:
                 raise _rejected(place, f"is nested more than {MAX_DEPTH} levels deep")
             node = Node(place, empty)
             self._place(node)
-            self.open.append((node, event.anchor))
-
-    def _take_alias(self, anchor: str, place: str) -> None:
-        node = self.anchors.get(anchor)
-        if node is None:
-            raise _rejected(place, f"the alias *{plain(anchor)} stands for nothing before it")
-        self._place(Node(place, node.value, node.key_places, node.size))
+            self.open.append(node)
 
     def _take_scalar(self, event: Any, place: str, *, quoted: bool) -> None:
-        if self.open and isinstance(self.open[-1][0].value, dict) and self.key is None:
+        if self.open and isinstance(self.open[-1].value, dict) and self.key is None:
+            if event.value == "<<" and not quoted:
+                raise _rejected(place, "the merge key << is not accepted; write the values out")
             self.key = (event.value, place)
             return
-        value = event.value if quoted else parse_scalar_text(event.value)
-        node = Node(place, value)
-        self._place(node)
-        if event.anchor:
-            self.anchors[event.anchor] = node
+        self._place(Node(place, event.value if quoted else parse_scalar_text(event.value)))
 
     def _place(self, node: Node) -> None:
         """Put a value where the open mapping or list expects one."""
         if not self.open:
             self.root = node
             return
-        self.nodes += node.size
+        self.nodes += 1
         if self.nodes > MAX_NODES:
             raise _rejected(node.place, f"holds more than {MAX_NODES} values")
-        parent = self.open[-1][0]
+        parent = self.open[-1]
         if isinstance(parent.value, list):
             parent.value.append(node)
         elif isinstance(parent.value, dict):

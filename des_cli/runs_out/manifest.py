@@ -7,7 +7,6 @@ import json
 import math
 import os
 import re
-import stat
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -18,6 +17,7 @@ from des_cli import __version__
 from des_cli.errors import Complaint, FileAccessError
 from des_cli.model.run import Run
 from des_cli.profiles_in.machine_yaml import machine_mapping
+from des_cli.profiles_in.source import label_of, read_source
 from des_cli.runs_out.atomic import is_temporary
 from des_cli.runs_out.blas import blas_kernels
 from des_cli.runs_out.plain_words import plain_words
@@ -114,15 +114,8 @@ def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def read_bytes(path: Path) -> bytes:
-    """Return the bytes of a regular file, or raise FileAccessError.
-
-    In the folder of a run from somebody else a pipe would be waited for, and a device
-    read without end.
-    """
-    with plain_words(path, "cannot be read"):
-        if not stat.S_ISREG(path.stat().st_mode):
-            raise FileAccessError([Complaint(str(path), "cannot be read: it is not a file")])
-        return path.read_bytes()
+    """Return the bytes of a regular file, or raise FileAccessError."""
+    return read_source(path, label_of(path), None)
 
 
 def parse_object(path: Path, data: bytes) -> dict[str, Any]:

@@ -172,3 +172,28 @@ def test_a_closed_stdout_is_1_in_one_line(
         check=False,
     )
     assert (done.returncode, done.stderr) == (1, b"stdout: is closed\n")
+
+
+@pytest.mark.parametrize(("debug", "shown"), [("", False), ("1", True)])
+def test_warnings_of_python_reach_only_who_mends_the_tool(
+    python_environment: dict[str, str], tmp_path: Path, debug: str, shown: bool
+) -> None:
+    """Of a command here, and of whatever process it starts."""
+    (tmp_path / "try.py").write_text(
+        "import subprocess, sys, warnings\n"
+        "from des_cli.cli import main\n"
+        "def program():\n"
+        "    warnings.warn('here', RuntimeWarning)\n"
+        "    code = \"import warnings; warnings.warn('there', RuntimeWarning)\"\n"
+        "    subprocess.run([sys.executable, '-c', code])\n"
+        "main.program.main = program\n"
+        "main.main()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "try.py"],
+        capture_output=True,
+        cwd=tmp_path,
+        env=python_environment | {"DES_CORIOLIS_DEBUG": debug},
+        check=False,
+    )
+    assert [word in done.stderr.decode() for word in ("here", "there")] == [shown, shown]

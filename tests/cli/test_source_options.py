@@ -17,6 +17,7 @@ from des_cli.cli.source_options import (
     source_of,
 )
 from des_cli.errors import FileAccessError
+from des_cli.profiles_in.caps import Caps
 
 FOUND: dict[str, object] = {}
 
@@ -90,10 +91,18 @@ def test_the_machine_stands_before_the_settings_that_change_it() -> None:
 
 def test_stdin_is_read_once_and_only_where_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", SimpleNamespace(buffer=io.BytesIO(b"profile")))
-    assert read_stdin(("a.yaml", "b.yaml")) is None
+    assert read_stdin(("a.yaml", "b.yaml"), Caps()) is None
     with pytest.raises(click.UsageError, match="only once"):
-        read_stdin(("-", "-"))
-    assert read_stdin(("a.yaml", "-")) == b"profile"
+        read_stdin(("-", "-"), Caps())
+    assert read_stdin(("a.yaml", "-"), Caps()) == b"profile"
     monkeypatch.setattr("sys.stdin", None)
     with pytest.raises(FileAccessError, match="stdin: is closed"):
-        read_stdin(("-",))
+        read_stdin(("-",), Caps())
+
+
+def test_stdin_is_read_no_further_than_its_cap(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.BytesIO(bytes(3 << 20))
+    monkeypatch.setattr("sys.stdin", SimpleNamespace(buffer=stream))
+    with pytest.raises(FileAccessError, match="<stdin>: is larger than 1 MiB; --max-mib"):
+        read_stdin(("-",), Caps(mib=1))
+    assert stream.tell() == (1 << 20) + 1

@@ -63,12 +63,17 @@ def test_each_is_a_maneuver_with_coriolis_within_the_limits(name: str) -> None:
             assert np.abs(motion.rate_step[:, joint]).max() < 1e-6
 
 
-def test_a_file_of_that_name_comes_before_the_built_in_one(
+def test_a_file_of_that_name_does_not_stand_for_the_built_in_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "cobra").write_text("t_s,arm_rpm,fork_deg,cab_deg\n0,1,2,3\n1,2,3,4\n")
     monkeypatch.chdir(tmp_path)
-    assert len(load_profile("cobra").t) == 2
+    assert len(load_profile("./cobra").t) == 2
+    assert len(load_profile(Path("cobra")).t) == 2
+    built_in = load_profile("cobra")
+    assert len(built_in.t) == 1001
+    what = "cobra is the built-in profile; the file of this name here is ./cobra"
+    assert what in built_in.remarks
 
 
 def test_every_kind_of_input_has_an_example() -> None:

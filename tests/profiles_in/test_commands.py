@@ -68,10 +68,12 @@ def test_times_are_in_seconds_and_what_is_not_given_is_the_default() -> None:
             "time.stop_ms: must be greater than start_s (2)",
             "time.step_s: must be greater than 0",
         ]),
-        ("{start_s: 0, stop_s: 5000001, step_s: 1}",
-         ["time.step_s: makes more than 5000000 samples; give a longer step"]),
+        ("{start_s: 0, stop_s: 1000001, step_s: 1}",
+         ["time.step_s: makes more than 1000000 samples; give a longer step, or --max-rows"]),
         ("{start_s: 1e17, stop_s: 1.0000000000000008e17, step_s: 1}",
          ["time.step_s: is too short to tell times of this size apart"]),
+        ("{start_s: 0, stop_s: 1e308, step_s: 1e307}", ["time.stop_s: lasts longer than 1e+07 s"]),
+        ("{start_s: 0, stop_s: 5e-324, step_s: 5e-324}", ["time.step_s: must be at least 1e-09 s"]),
     ],
 )  # fmt: skip
 def test_times_that_make_no_grid_are_refused(text: str, lines: list[str]) -> None:

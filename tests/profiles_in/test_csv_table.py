@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from des_cli.errors import ProfileError
 from des_cli.profiles_in.csv_header import split_header
+from des_cli.profiles_in.csv_table import _LEFT_OUT as LEFT_OUT
 from des_cli.profiles_in.csv_table import Rows, column_text, read_columns
 
 JOINTS = "t_s,arm_rpm,fork_deg,cab_deg\n"
@@ -64,10 +65,9 @@ def outcome(text: str) -> object:
 @settings(max_examples=150)
 @given(st.text(alphabet="01.e+- ,,\r\n\n", max_size=24))
 def test_what_the_fast_reader_takes_the_careful_one_takes_too(body: str) -> None:
-    text = f"a,b\n1,2\n{body}"
+    text = f"a,b\n1,2\n{body}\n"
     # A comment is none of the fast reader's business.
-    end = "" if body.endswith(("\n", "\r")) or not body else "\n"
-    assert outcome(text) == outcome(f"{text}{end}# end\n")
+    assert outcome(text) == outcome(f"{text}# end\n")
 
 
 @pytest.mark.parametrize(
@@ -150,3 +150,26 @@ def test_only_the_clock_may_hold_times_of_day_and_its_text_is_kept() -> None:
 def test_what_is_in_a_column_that_nobody_reads_is_no_fault() -> None:
     values = read("a,note,b\n1,inf,2\n3,,4\n5,x,6\n", 0, 2).values
     assert values.tolist() == [[1, 2], [3, 4], [5, 6]]
+
+
+def test_a_last_number_that_may_be_cut_is_refused_where_it_is_read() -> None:
+    body = "0,1,2,3\n1,1,2,0.0125"
+    whole = read(JOINTS + body + "\n")
+    np.testing.assert_array_equal(whole.values[-1], [1, 1, 2, 0.0125])
+    for cut in range(1, 5):
+        (line,) = problems_of(JOINTS + body[:-cut])
+        assert line.startswith("x.csv:3: cab_deg: the last line does not end")
+        assert "end the line, or take it out" in line
+    assert problems_of(JOINTS + body[:-6]) == ["x.csv:3: cab_deg: is missing; " + LEFT_OUT]
+    (line,) = problems_of(JOINTS + body[:-7])
+    assert line.startswith("x.csv:3: fork_deg: the last line does not end")
+    np.testing.assert_array_equal(read(JOINTS + body, 0, 1, 2).values[-1], [1, 1, 2])
+    assert len(read(JOINTS + body + "\n# end").values) == 2
+
+
+def test_too_many_rows_are_refused_by_both_readers_before_they_are_read() -> None:
+    text = "0,1,2,3\n1,1,2,3\n2,1,2,3\n"
+    for body in (text, text + "x\n"):
+        header = split_header(JOINTS + body, "x.csv")
+        with pytest.raises(ProfileError, match=r"x\.csv: has more than 2 rows; --max-rows"):
+            read_columns(header, [0, 1], most_rows=2)

@@ -63,7 +63,6 @@ AS_THEY_COME: dict[str, tuple[str | bytes, dict[str, Any]]] = {
     "separators at the ends of rows": (HEADER + ROWS.replace("\n", ",,\n"), {}),
     "separators at the end of the header": (HEADER.replace("\n", ",,\n") + ROWS, {}),
     "empty last lines": (HEADER + ROWS + "\n\n  \n", {}),
-    "no last line end": ((HEADER + ROWS).rstrip(), {}),
     "blanks in the header": ("t_s , p_rad_s, q_rad_s ,r_rad_s\n" + ROWS, {}),
     "capitals": (HEADER.upper() + ROWS, {}),
     "row of units": ("t,p,q,r\ns,rad/s,rad/s,rad/s\n" + ROWS, {}),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from des_cli.errors import FileAccessError, ProfileError, UsageError
 from des_cli.model.profile import BodyRates
+from des_cli.profiles_in.caps import Caps
 from des_cli.profiles_in.load import load_profile
 from tests.support.profiles import SMALL, load
 
@@ -75,3 +77,25 @@ def test_a_yaml_profile_must_be_utf_8(tmp_path: Path) -> None:
 def test_renaming_columns_of_a_yaml_profile_is_wrong_use() -> None:
     with pytest.raises(UsageError, match="renames columns of a CSV profile"):
         load_profile("cobra", columns={"t_s": "t"})
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+@pytest.mark.parametrize("line", ["machine: ./pipe", "samples: {file: pipe}"])
+def test_what_a_profile_refers_to_is_no_pipe(tmp_path: Path, line: str) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "run.yaml").write_text(f"format: des-coriolis/1\n{line}\n")
+    with pytest.raises((FileAccessError, ProfileError), match="pipe: is a pipe, not a file"):
+        load_profile(tmp_path / "run.yaml")
+
+
+def test_only_the_caller_raises_the_caps(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("t_s,arm_rpm,fork_deg,cab_deg\n" + "".join(f"{k},1,2,3\n" for k in range(5)))
+    with pytest.raises(ProfileError, match="has more than 4 rows"):
+        load_profile(path, caps=Caps(rows=4))
+    assert len(load_profile(path, caps=Caps(rows=5)).t) == 5
+    with pytest.raises(ProfileError, match="makes more than 4 samples"):
+        load_profile("-", stdin=SMALL.encode(), caps=Caps(rows=4))
+    path.write_bytes(bytes((1 << 20) + 1))
+    with pytest.raises(FileAccessError, match="is larger than 1 MiB"):
+        load_profile(path, caps=Caps(mib=1))

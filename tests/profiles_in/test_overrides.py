@@ -127,6 +127,12 @@ def test_a_setting_that_leads_nowhere_is_refused(setting: str, words: str) -> No
     assert line.isprintable()
 
 
+@pytest.mark.parametrize("path", ["a" + ".a" * 1000, "a" + ".a" * 50_000, "a" + "[1]" * 30])
+def test_a_path_deeper_than_any_key_is_refused(path: str) -> None:
+    with pytest.raises(ProfileError, match="is a path of more than 20 levels"):
+        load_profile("cobra", settings=[f"{path}=1"])
+
+
 def test_unknown_keys_and_bad_values_name_the_setting_as_their_place() -> None:
     with pytest.raises(ProfileError) as caught:
         load_profile("cobra", settings=["redction.r2=1", "reduction.r2=-1", "joints.arm_rpm[7]=2"])

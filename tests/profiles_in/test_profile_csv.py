@@ -99,7 +99,7 @@ def test_an_incomplete_attitude_is_left_out() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        JOINTS + "0,1,2,3\n1,2,3,4",
+        JOINTS + "0,1,2,3\n1,2,3,4\n",
         JOINTS + "0,1,2,3\n1,2,3,4\n\n\n",
         "\ufeff" + JOINTS + "0,1,2,3\n1,2,3,4\n",
         (JOINTS + "0,1,2,3\n1,2,3,4\n").replace("\n", "\r\n"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -22,17 +23,21 @@ def test_a_file_is_called_by_its_path(tmp_path: Path) -> None:
         assert ProfileFile.read(source, b"unread") == ProfileFile(path, str(path), b"t_s\r\n")
 
 
-def test_a_file_goes_before_a_built_in_maneuver_of_its_name(
+def test_a_built_in_maneuver_goes_before_what_has_its_name_here(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (cobra,) = [profile for profile in builtin_profiles() if profile.name == "cobra"]
-    found = ProfileFile.read("cobra", None)
-    assert (found.path, found.label, found.data) == (
-        cobra.path, "cobra.yaml", cobra.path.read_bytes()
-    )  # fmt: skip
+    built_in = ProfileFile(cobra.path, "cobra.yaml", cobra.path.read_bytes())
+    assert ProfileFile.read("cobra", None) == built_in
+    Path("cobra").mkdir()
+    assert ProfileFile.read("cobra", None) == built_in
+    Path("cobra").rmdir()
     Path("cobra").write_bytes(b"own")
-    assert ProfileFile.read("cobra", None) == ProfileFile(Path("cobra"), "cobra", b"own")
+    what = "cobra is the built-in profile; the file of this name here is ./cobra"
+    assert ProfileFile.read("cobra", None) == replace(built_in, remarks=(what,))
+    for own in ("./cobra", Path("cobra")):
+        assert ProfileFile.read(own, None).data == b"own"
 
 
 @pytest.mark.parametrize(
@@ -41,7 +46,7 @@ def test_a_file_goes_before_a_built_in_maneuver_of_its_name(
         ("none.yaml", "none.yaml: there is no such file, and no built-in profile of that name"),
         ("cobar", "of that name (did you mean cobra?)"),
         (".", ".: is a folder"),
-        ("a\0b", "no such file"),
+        ("a\0b", "is not a file name"),
         ("x" * 5000, "cannot be read"),
         ("/dev/null", "/dev/null: is a device"),
         ("-", "<stdin>: nothing was given on standard input"),

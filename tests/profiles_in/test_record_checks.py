@@ -135,3 +135,12 @@ def test_two_axes_together_reach_what_neither_does_on_most_rows() -> None:
     columns = [column("p", "rad_s"), column("q", "rad_s")]
     values = {"p": [50.0, 50, 0, 0, 0], "q": [0.0, 0, 50, 50, 0]}
     assert len(remarks_on_units(columns, values)) == 1
+
+
+def test_times_of_another_unit_are_told_by_how_far_they_are_apart() -> None:
+    for t in ([0.0, 1e300, 2e300], [0.0, 6e6, 1.2e7], [-1.7e308, 0.0, 1.7e308]):
+        (line,) = complaints_of_times(t)
+        assert line.endswith("s, longer than 1e+07 s: correct its unit")
+    (line,) = complaints_of_times([0.0, 5e-324, 1e-323])
+    assert line == "x.csv:5: t_s: a step of 4.94e-324 s is shorter than 1e-09 s: correct its unit"
+    assert complaints_of_times([0.0, 5e6, 1e7]) == complaints_of_times([0.0, 2e-9, 4e-9]) == []

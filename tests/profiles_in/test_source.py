@@ -15,17 +15,38 @@ from des_cli.profiles_in.source import decode, decode_table, label_of, read_sour
 def test_a_file_is_read_as_it_is(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_bytes(b"\xef\xbb\xbfa\r\nb\x00\xff")
-    assert read_source(path, "x") == b"\xef\xbb\xbfa\r\nb\x00\xff"
+    assert read_source(path, "x", None) == b"\xef\xbb\xbfa\r\nb\x00\xff"
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
-def test_a_pipe_is_read_to_its_end(tmp_path: Path) -> None:
+def test_a_pipe_is_read_to_its_end_where_somebody_writes_it(tmp_path: Path) -> None:
     path = tmp_path / "pipe"
     os.mkfifo(path)
-    writer = threading.Thread(target=path.write_bytes, args=(b"0,1\n" * 50_000,), daemon=True)
+    with pytest.raises(FileAccessError, match="x: is a pipe, not a file"):
+        read_source(path, "x", None)
+    with pytest.raises(FileAccessError, match="x: is a pipe that nobody writes to"):
+        read_source(path, "x", None, pipes=True)
+    # Open on both sides: there is a writer, which has written nothing yet.
+    held = os.open(path, os.O_RDWR)
+
+    def write() -> None:
+        path.write_bytes(b"0,1\n" * 50_000)
+        os.close(held)
+
+    writer = threading.Timer(0.05, write)
+    writer.daemon = True
     writer.start()
-    assert read_source(path, "x") == b"0,1\n" * 50_000
+    assert read_source(path, "x", None, pipes=True) == b"0,1\n" * 50_000
     writer.join()
+
+
+def test_a_file_is_read_no_further_than_its_cap(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes(bytes(1 << 20))
+    assert len(read_source(path, "x", 1)) == 1 << 20
+    path.write_bytes(bytes((1 << 20) + 1))
+    with pytest.raises(FileAccessError, match=r"^x: is larger than 1 MiB; --max-mib reads more$"):
+        read_source(path, "x", 1)
 
 
 @pytest.mark.parametrize(
@@ -34,13 +55,15 @@ def test_a_pipe_is_read_to_its_end(tmp_path: Path) -> None:
         ("none.csv", "cannot be read: No such file or directory"),
         (".", "is a folder, not a file"),
         ("/dev/null", "is a device, not a file"),
+        ("loop", "cannot be read: Too many levels of symbolic links"),
         ("x" * 5000, "cannot be read: File name too long"),
         ("a\0b", "cannot be read: is not a file name"),
     ],
 )
 def test_what_is_no_file_is_said_of_its_label(tmp_path: Path, name: str, words: str) -> None:
+    (tmp_path / "loop").symlink_to("loop")
     with pytest.raises(FileAccessError) as caught:
-        read_source(tmp_path / name, "the log")
+        read_source(tmp_path / name, "the log", None)
     assert str(caught.value) == f"the log: {words}"
 
 
@@ -50,7 +73,7 @@ def test_a_file_without_permission_is_named(tmp_path: Path) -> None:
     path.write_bytes(b"a: 1\n")
     path.chmod(0)
     with pytest.raises(FileAccessError, match=r"^x: cannot be read: Permission denied$"):
-        read_source(path, "x")
+        read_source(path, "x", None)
 
 
 @pytest.mark.parametrize("data", [b"\xef\xbb\xbfn: \xc3\xa9\n", b"n: \xc3\xa9\n"])

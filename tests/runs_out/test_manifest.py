@@ -3,6 +3,7 @@
 import hashlib
 import json
 import math
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -143,3 +144,14 @@ def test_json_is_exact_ordered_and_knows_no_infinity() -> None:
     assert list(found) == ["b", "a", "c"]
     assert found == {"b": 0.1, "a": {"x": None, "n": 3, "ok": True}, "c": [None, [1e-300, 2.5]]}
     assert b"true" in data
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(stored: Path) -> None:
+    (stored / "metrics.json").unlink()
+    os.mkfifo(stored / "metrics.json")
+    with pytest.raises(FileAccessError, match=r"metrics\.json: is a pipe, not a file"):
+        read_run(stored)
+    (stored / "manifest.json").unlink()
+    os.mkfifo(stored / "manifest.json")
+    assert not is_run(stored)
