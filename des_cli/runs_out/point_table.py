@@ -22,6 +22,10 @@ COLUMNS = tuple(field.name for field in fields(TradePoint))
 _WORDS = ("algorithm", "control", "swept", "status", "message")
 
 
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""How a text begins that a spreadsheet would compute; numbers are written as they are."""
+
+
 def encode_points(points: Sequence[TradePoint], format: TableFormat) -> bytes:
     """Return points as a table, a row a point.
 
@@ -56,6 +60,8 @@ def _cell(value: Any) -> str:
         return ""
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, str):
+        return f"'{value}" if value.startswith(_FORMULA) else value
     return float.__repr__(value) if isinstance(value, float) else str(value)
 
 
