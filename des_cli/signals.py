@@ -25,6 +25,9 @@ _ENDINGS = {
 
 _CODES = {getattr(signal, name): code for name, code in _ENDINGS.items() if hasattr(signal, name)}
 
+_raised: list[ExitCode] = []
+"""What was raised in this process."""
+
 _AGAIN_S = 0.01
 """After which time an exception that was lost is raised again."""
 
@@ -74,6 +77,7 @@ def hear(when: Callable[[], bool] = lambda: True) -> list[signal.Signals]:
             os._exit(code)
         if not stopped:
             stopped = True
+            _raised.append(code)
             raise Stopped(code)
 
     def again(lost: Any) -> None:
@@ -83,6 +87,7 @@ def hear(when: Callable[[], bool] = lambda: True) -> list[signal.Signals]:
             sys.__unraisablehook__(lost)
             return
         code = lost.exc_value.exit_code
+        _raised.clear()
         number = next(each for each in heard if _CODES[each] == code)
         stopped = False
         threading.Timer(_AGAIN_S, os.kill, (os.getpid(), number)).start()
@@ -92,6 +97,16 @@ def hear(when: Callable[[], bool] = lambda: True) -> list[signal.Signals]:
     for number in heard:
         signal.signal(number, stop)
     return heard
+
+
+def raise_if_stopped(error: BaseException) -> None:
+    """Raise `Stopped` again where another error came of it.
+
+    A module of compiled code that is being loaded says ``ImportError: initialization
+    failed`` of whatever is raised meanwhile.
+    """
+    if _raised and not isinstance(error, Stopped):
+        raise Stopped(_raised[0]) from error
 
 
 @contextmanager

@@ -100,3 +100,33 @@ main()
     with process:
         _, words = process.communicate(timeout=60)
     assert (process.returncode, words) == (-signal.SIGINT, b"")
+
+
+# The signal comes while something is done that makes another error of whatever is raised.
+LOST = """
+import os, signal, sys
+from des_cli.errors import Stopped
+from des_cli.signals import raise_if_stopped, stopping
+
+with stopping():
+    raise_if_stopped(ImportError("of its own"))
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+        signal.sigtimedwait([], 1)
+    except Stopped:
+        pass
+    try:
+        raise_if_stopped(ImportError("initialization failed"))
+    except Stopped as again:
+        sys.exit(int(again.exit_code))
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "sigtimedwait"), reason="signals of a POSIX system")
+def test_an_error_that_came_of_a_signal_is_the_signal(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", LOST], cwd=tmp_path, env=python_environment, check=False
+    )
+    assert done.returncode == 143

@@ -16,6 +16,7 @@ from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.notice import Notice
 from des_cli.model.stage import OnStage, untold
 from des_cli.runs_out.lock import locked
+from des_cli.signals import raise_if_stopped
 
 # What needs numpy is imported when a job runs, as in `source`.
 if TYPE_CHECKING:
@@ -82,6 +83,7 @@ def _result_of(job: Job, name: str, do: Callable[..., JobResult], *args: Any) ->
     except BrokenPipeError:
         raise
     except Exception as error:
+        raise_if_stopped(error)
         return JobResult.failed(job, error, name)
 
 
@@ -96,6 +98,7 @@ def _read(job: Job, on_stage: OnStage) -> Profile | JobResult:
     except BrokenPipeError:
         raise
     except Exception as error:
+        raise_if_stopped(error)
         return JobResult.failed(job, error, name)
     return profile
 

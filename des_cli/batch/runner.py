@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 
 from des_cli.errors import Complaint, FileAccessError
 from des_cli.model.stage import OnStage, untold
+from des_cli.signals import raise_if_stopped
 
 if TYPE_CHECKING:
     from des_cli.model.solution import Iteration
@@ -132,4 +133,5 @@ def _result_of(
     except BrokenExecutor:
         return failed(task, FileAccessError([Complaint(task.label, LOST)]))
     except Exception as error:  # of the executor; the work itself raises none
+        raise_if_stopped(error)
         return failed(task, error)

@@ -15,6 +15,7 @@ from des_cli.errors import DesError, ExitCode, Failure
 from des_cli.model.stage import OnStage, untold
 from des_cli.model.tradeoff import TradePoint
 from des_cli.profiles_in.setting import AnySetting
+from des_cli.signals import raise_if_stopped
 
 # What needs numpy is imported when a job runs, as in `batch`.
 if TYPE_CHECKING:
@@ -187,6 +188,7 @@ def run_point(
         # of several budgets, only the plan knows which one is swept
         return PointResult((replace(point, swept=plan.swept, value=plan.value),), tuple(log))
     except Exception as error:
+        raise_if_stopped(error)
         return PointResult.failed(job, error)
 
 
