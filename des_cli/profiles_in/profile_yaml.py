@@ -35,6 +35,7 @@ from des_cli.profiles_in.machine_yaml import (
 )
 from des_cli.profiles_in.overrides import OPTION, apply_settings
 from des_cli.profiles_in.profile_csv import parse_samples
+from des_cli.profiles_in.record_checks import unfollowed_turning
 from des_cli.profiles_in.reduction_section import read_reduction
 from des_cli.profiles_in.schema import BodyRates as BodyRatesSection
 from des_cli.profiles_in.schema import Joints as JointsSection
@@ -194,6 +195,10 @@ def finish(
     if commands is not None:
         check_smoothing(reading.conditioning, commands[0], findings)
         check_washout(document.samples, commands[1], findings)
+        if isinstance(commands[1], BodyRates) and (
+            what := unfollowed_turning(commands[0], commands[1])
+        ):
+            findings.add((), what)
     reduction = read_reduction(document.reduction, findings)
     initial = read_initial(document.initial, commands, findings)
     if unread is not None and findings.complaints:

@@ -8,6 +8,7 @@ import numpy as np
 
 from des_cli.errors import Complaint
 from des_cli.model.arrays import Floats
+from des_cli.model.profile import BodyRates
 from des_cli.profiles_in.column_kinds import RATES, Column
 from des_cli.profiles_in.csv_header import Header
 from des_cli.profiles_in.csv_table import Rows
@@ -20,6 +21,13 @@ from des_cli.units import STANDARD_GRAVITY_M_S2
 FASTEST = 20.0
 """Rate [rad/s] above which no aircraft turns and no centrifuge: three turns a second. A
 record that is beyond it on most of its rows is one in deg/s under another name."""
+
+FOLLOWED = 1.0
+"""Turn [rad] from row to row that rows may be added for without a bound."""
+
+MOST_UNFOLLOWED = 300.0
+"""Turning [rad] in all, on steps of more than that, which is the work of some seconds: fifty
+turns that nobody recorded."""
 
 _TOLD = 20
 """Times described before the rest is only counted."""
@@ -71,6 +79,35 @@ def _check_lengths(
         row = int(np.argmin(step))
         what = f"a step of {step[row]:.3g} s is shorter than {SHORTEST_STEP:g} s: correct its unit"
         complaints.append(Complaint(f"{header.label}:{rows.lines[row + 1]}", f"{name}: {what}"))
+
+
+def unfollowed_turning(t: Floats, rates: BodyRates) -> str:
+    """Say that a body turns too far between rows that are too far apart to follow it.
+
+    Rows are added there, with each turn, until they hold the turning: without a bound a
+    record of three rows could take hours.
+
+    Parameters
+    ----------
+    t : (n,) array
+        [s]
+    rates : BodyRates
+
+    Returns
+    -------
+    str
+        Empty where the rows can be added.
+    """
+    fastest = np.max([np.linalg.norm(w, axis=1) for w in (rates.start, rates.middle, rates.end)], 0)
+    turn = np.diff(t) * fastest
+    coarse = turn > FOLLOWED
+    if turn[coarse].sum() <= MOST_UNFOLLOWED:
+        return ""
+    return (
+        f"the body turns by up to {turn.max():.3g} rad from one row to the next, and by "
+        f"{turn[coarse].sum():.3g} rad in all where it turns by more than {FOLLOWED:g}: that is "
+        f"no record of it; sample at least every {FOLLOWED / fastest.max():.2g} s, or correct units"
+    )
 
 
 def check_magnitudes(

@@ -34,6 +34,7 @@ from des_cli.profiles_in.dialect import parse_decimal, parse_separator
 from des_cli.profiles_in.g_schema import G, Washout
 from des_cli.profiles_in.gaps import GapPolicy
 from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE, MachineSection
+from des_cli.profiles_in.sampling import MAX_MAGNITUDE
 from des_cli.profiles_in.sections import OMITTED, Measure, Number, Section, fault
 from des_cli.profiles_in.wording import shown
 from des_cli.units import suffixes
@@ -73,19 +74,23 @@ def _in_words(parse: Callable[[str], str]) -> Callable[[str], str]:
     return check
 
 
+Angle = Annotated[Number, Field(ge=-MAX_MAGNITUDE, le=MAX_MAGNITUDE)]
+"""In any unit: the sine of a larger one has no digits that mean something."""
+
+
 class Seat(Section):
     """How the seat is fixed in the cab."""
 
-    yaw: Annotated[Number, Measure("angle", "the seat's yaw")] = OMITTED
-    pitch: Annotated[Number, Measure("angle", "the seat's pitch-back")] = OMITTED
+    yaw: Annotated[Angle, Measure("angle", "the seat's yaw")] = OMITTED
+    pitch: Annotated[Angle, Measure("angle", "the seat's pitch-back")] = OMITTED
 
 
 class Initial(Section):
     """Joint angles at the start; with joint commands only the arm's."""
 
-    arm: Annotated[Number, Measure("angle", "the arm's initial angle")] = OMITTED
-    fork: Annotated[Number, Measure("angle", "the fork's initial angle")] = OMITTED
-    cab: Annotated[Number, Measure("angle", "the cab's initial angle")] = OMITTED
+    arm: Annotated[Angle, Measure("angle", "the arm's initial angle")] = OMITTED
+    fork: Annotated[Angle, Measure("angle", "the fork's initial angle")] = OMITTED
+    cab: Annotated[Angle, Measure("angle", "the cab's initial angle")] = OMITTED
 
 
 class Time(Section):
@@ -182,6 +187,10 @@ Weight = Annotated[
 ]
 
 
+Most = Annotated[Number, Field(ge=1e-9, le=1e12)]
+"""Of a budget: a smaller one is rounding, and its square need not be a number."""
+
+
 def _budget_kind(value: Any) -> str | None:
     if isinstance(value, dict):
         return "<by metric>"
@@ -189,9 +198,9 @@ def _budget_kind(value: Any) -> str | None:
 
 
 Budget = Annotated[
-    Annotated[Positive, Tag("<number>")]
+    Annotated[Most, Tag("<number>")]
     | Annotated[
-        dict[MetricKey, Positive],
+        dict[MetricKey, Most],
         Field(min_length=1),
         Tag("<by metric>"),
     ],

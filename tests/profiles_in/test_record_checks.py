@@ -8,10 +8,16 @@ import numpy as np
 import pytest
 
 from des_cli.errors import Complaint
+from des_cli.model.profile import BodyRates
 from des_cli.profiles_in.column_kinds import Column
 from des_cli.profiles_in.csv_header import Header
 from des_cli.profiles_in.csv_table import Rows
-from des_cli.profiles_in.record_checks import check_magnitudes, check_times, tell_doubtful_units
+from des_cli.profiles_in.record_checks import (
+    check_magnitudes,
+    check_times,
+    tell_doubtful_units,
+    unfollowed_turning,
+)
 from des_cli.profiles_in.sample_times import SampleTimes
 from des_cli.units import unit_named
 
@@ -144,3 +150,19 @@ def test_times_of_another_unit_are_told_by_how_far_they_are_apart() -> None:
     (line,) = complaints_of_times([0.0, 5e-324, 1e-323])
     assert line == "x.csv:5: t_s: a step of 4.94e-324 s is shorter than 1e-09 s: correct its unit"
     assert complaints_of_times([0.0, 5e6, 1e7]) == complaints_of_times([0.0, 2e-9, 4e-9]) == []
+
+
+def test_turning_between_rows_that_nobody_recorded_is_told_with_the_step_it_takes() -> None:
+    def turning(step: float, rate: float, rows: int = 3) -> str:
+        t = step * np.arange(rows)
+        rates = np.full((rows - 1, 3), [rate, 0.0, 0.0])
+        return unfollowed_turning(t, BodyRates(rates, rates, rates))
+
+    assert turning(10.0, 0.2) == ""
+    assert turning(1.0, 0.99, rows=100_000) == ""
+    assert turning(75.0, 2.0) == ""
+    what = turning(76.0, 2.0)
+    assert what.startswith("the body turns by up to 152 rad from one row to the next")
+    assert "304 rad in all" in what
+    assert "sample at least every 0.5 s" in what
+    assert "rad in all" in turning(1.01, 1.0, rows=1000)
