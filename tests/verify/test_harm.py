@@ -101,3 +101,12 @@ def test_a_start_that_nobody_knows_is_not_compared() -> None:
     table = cab_swings(0.5)
     offsets = start_offsets(np.array([math.nan, 0.25, math.nan]), table)
     assert [(joint, off) for joint, _, off, _ in offsets] == [("fork", -0.25)]
+
+
+def test_a_jump_is_beside_what_the_onset_explains_over_two_intervals() -> None:
+    t = np.linspace(0.0, 6.0, 301)
+    at_rest = CommandTable(t, 1.0 + 0.0 * t, np.zeros((len(t), 2)))
+    plain, explained = (names(arm_spins_up(t), at_rest, onset)["g-jump"] for onset in (0.0, 1.0))
+    sizes = [float(text.split(" by ")[1].split(" g")[0]) for text in (plain, explained)]
+    # 1 g/s along each of three axes, over two steps of 0.02 s
+    assert sizes[0] - sizes[1] == pytest.approx(math.sqrt(3.0) * 0.04, abs=0.011)
