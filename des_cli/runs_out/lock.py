@@ -61,13 +61,12 @@ def locked(target: Path) -> Iterator[None]:
             _take(home, target, path, held)
         yield
     finally:
-        with undisturbed():
-            for descriptor in held:
-                os.close(descriptor)
-            remove_unless_held(path)
-            for folder in made:
-                with suppress(OSError):
-                    folder.rmdir()
+        try:
+            _let_go(held, path, made)
+        except KeyboardInterrupt:
+            # A signal came just before they were kept waiting; no other one is heard.
+            _let_go(held, path, made)
+            raise
 
 
 def short_stem(name: str) -> str:
@@ -126,6 +125,17 @@ def remove_all(path: Path) -> None:
             shutil.rmtree(path, ignore_errors=True)
         else:
             path.unlink()
+
+
+def _let_go(held: list[int], path: Path, made: list[Path]) -> None:
+    """Release a lock, and remove what was made for it; also for a second time."""
+    with undisturbed():
+        while held:
+            os.close(held.pop())
+        remove_unless_held(path)
+        for folder in made:
+            with suppress(OSError):
+                folder.rmdir()
 
 
 def _make_parents(home: Path, target: Path, made: list[Path]) -> None:

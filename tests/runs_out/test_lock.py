@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from des_cli.errors import ExitCode, FileAccessError
+from des_cli.runs_out import lock
 from des_cli.runs_out.lock import locked, short_stem
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="nothing is locked on Windows")
@@ -116,3 +117,21 @@ def test_long_names_keep_their_own_stem() -> None:
     assert len({short_stem(name) for name in names}) == 2
     assert all(len(short_stem(name)) <= 40 for name in names)
     assert short_stem("cobra") == "cobra"
+
+
+def test_a_signal_at_the_very_end_leaves_no_lock_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    really, calls = lock.undisturbed, []
+
+    def late() -> object:
+        calls.append(1)
+        if len(calls) == 2:  # the first keeps signals waiting while the lock is taken
+            raise KeyboardInterrupt
+        return really()
+
+    monkeypatch.setattr(lock, "undisturbed", late)
+    with pytest.raises(KeyboardInterrupt), lock.locked(tmp_path / "parent" / "run"):
+        assert [path.name for path in (tmp_path / "parent").iterdir()] == [".run.lock"]
+    assert list(tmp_path.iterdir()) == []
+    assert len(calls) == 3
