@@ -208,16 +208,17 @@ def _refuse_existing(output: Output, target: Path) -> None:
 
 
 def _holds_run_of(folder: Path, profile: Profile) -> bool:
+    from des_cli.results.reading import read_metrics
     from des_cli.runs_out.manifest import is_run
     from des_cli.runs_out.run_folder import read_run
 
     if not is_run(folder):
         return False
     try:
-        stored = read_run(folder).metrics["profile"]["sha256"]
-    except (DesError, OSError, KeyError):
+        stored = read_metrics(read_run(folder).metrics).profile
+    except (DesError, OSError):
         return False
-    return bool(profile.sha256) and stored == profile.sha256
+    return bool(profile.sha256) and stored.sha256 == profile.sha256
 
 
 def _weighted_components(profile: Profile) -> tuple[str, ...]:

@@ -123,7 +123,9 @@ def parse_object(path: Path, data: bytes) -> dict[str, Any]:
     try:
         content = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise FileAccessError([Complaint(str(path), f"is not JSON: {error}")]) from error
+        # Only the parser's own words are for people: "Expecting value: line 1 column 1".
+        words = f": {error}" if isinstance(error, json.JSONDecodeError) else ""
+        raise FileAccessError([Complaint(str(path), f"is not JSON{words}")]) from error
     if not isinstance(content, dict):
         raise FileAccessError([Complaint(str(path), "is not a JSON object")])
     return content

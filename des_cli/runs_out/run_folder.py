@@ -375,7 +375,8 @@ def _read_trajectory(path: Path, data: bytes) -> dict[str, Floats]:
     import pyarrow.parquet as pq
 
     try:
-        table = pq.read_table(pa.BufferReader(data))
+        # Without threads of its own: one that still ends when the process does aborts it.
+        table = pq.read_table(pa.BufferReader(data), use_threads=False, pre_buffer=False)
         columns = {
             name: np.asarray(column.to_numpy(), dtype=np.float64)
             for name, column in zip(table.column_names, table.columns, strict=True)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.support.run_files import RUN_FILES
+from tests.support.run_files import RUN_FILES, replace_file
 
 
 def test_several_profiles_have_a_folder_each(invoke, write_profile, tmp_path) -> None:
@@ -74,3 +74,24 @@ def test_resume_keeps_a_finished_run_and_refuses_another(invoke, write_profile, 
     result = invoke("reduce", files[0], "--no-plots", "--resume", "--r2", "8")
     assert result.exit_code == 1
     assert "very same profile" in result.stderr or "of this very profile" in result.stderr
+
+
+def test_resume_takes_no_odd_metrics_for_those_of_the_profile(
+    invoke, write_profile, tmp_path
+) -> None:
+    """Each listed in its manifest with the right digest, as a forger would."""
+    file = write_profile("one").name
+    assert invoke("reduce", file, "--no-plots").exit_code == 0
+    folder = tmp_path / "runs" / "one"
+    for odd in (
+        *(b"[]", b"{}", b"", b"\xff", b"null", b'{"profile": [1]}', b'{"profile": null}'),
+        *(b'{"profile": "x"}', b'{"profile": {"sha256": [1]}}', b'{"profile": {"sha256": NaN}}'),
+        b'{"profile": %b}' % (b"9" * 5000),
+        b'{"profile": %b%b}' % (b"[" * 100_000, b"]" * 100_000),
+    ):
+        replace_file(folder, "metrics.json", odd)
+        result = invoke("reduce", file, "--no-plots", "--resume")
+        assert result.exit_code == 1, odd[:80]
+        assert result.stderr.splitlines()[-1].endswith(
+            "is not a finished run of this very profile; --overwrite replaces it"
+        )

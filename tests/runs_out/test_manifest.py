@@ -4,6 +4,7 @@ import hashlib
 import json
 import math
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from des_cli.runs_out.manifest import (
     encode_json,
     is_run,
     is_sealed,
+    parse_object,
     read_manifest,
 )
 from des_cli.runs_out.run_folder import read_run, write_run
@@ -155,3 +157,21 @@ def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(stored: Path) -> None:
     (stored / "manifest.json").unlink()
     os.mkfifo(stored / "manifest.json")
     assert not is_run(stored)
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"{", "is not JSON: Expecting property name enclosed in double quotes: line 1"),
+        (b"9" * 5000, "is not JSON"),
+        (b"[" * 100_000, "is not JSON"),
+        (b"\xff", "is not JSON"),
+        (b"[]", "is not a JSON object"),
+    ],
+    ids=["cut", "digits", "deep", "bytes", "list"],
+)
+def test_what_is_no_json_is_told_without_words_for_programmers(data: bytes, words: str) -> None:
+    with pytest.raises(FileAccessError) as caught:
+        parse_object(Path("m.json"), data)
+    assert str(caught.value).startswith(f"m.json: {words}")
+    assert not re.search(r"sys\.|recursion|codec", str(caught.value))

@@ -40,6 +40,18 @@ def test_csv_leaves_what_is_not_known_empty() -> None:
     assert solved["message"] == POINTS[0].message
 
 
+@pytest.mark.parametrize(
+    "text", ["=1+1", "+1", "-1", "@SUM(A1)", "\tx", "\rx", "=cmd|' /C calc'!A0"]
+)
+def test_no_text_is_a_formula_of_a_spreadsheet_and_no_number_is_another(text: str) -> None:
+    point = replace(POINT, message=text, value=-0.25)
+    data = encode_points([point], "csv").decode()
+    (row,) = csv.DictReader(io.StringIO(data.replace("\r", "\\r"), newline=""))
+    assert row["message"] == f"'{text}".replace("\r", "\\r")
+    assert row["value"] == "-0.25"
+    assert json.loads(encode_points([point], "ndjson"))["message"] == text
+
+
 @pytest.mark.parametrize("form", ["csv", "ndjson", "json", "parquet"])
 def test_no_points_are_a_table_without_rows(form) -> None:
     data = encode_points([], form)
