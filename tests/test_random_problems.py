@@ -16,7 +16,7 @@ from des_cli.release.gate import require_table
 from des_cli.runs_out.tables import command_columns, encode_table
 from tests.support.random_problems import random_profile
 
-PROBLEMS = int(os.environ.get("DES_CORIOLIS_PROBLEMS", "300"))
+PROBLEMS = int(os.environ.get("DES_CORIOLIS_PROBLEMS", "150"))
 """How many are drawn; CONTRIBUTING.md tells of more."""
 
 FIRST = int(os.environ.get("DES_CORIOLIS_PROBLEMS_FROM", "0"))
