@@ -99,14 +99,20 @@ def hear(when: Callable[[], bool] = lambda: True) -> list[signal.Signals]:
     return heard
 
 
-def raise_if_stopped(error: BaseException) -> None:
-    """Raise `Stopped` again where another error came of it.
+def cause_of(error: BaseException) -> BaseException:
+    """Return an error, or `Stopped` where it came of that.
 
     A module of compiled code that is being loaded says ``ImportError: initialization
     failed`` of whatever is raised meanwhile.
     """
-    if _raised and not isinstance(error, Stopped):
-        raise Stopped(_raised[0]) from error
+    return error if not _raised or isinstance(error, Stopped) else Stopped(_raised[0])
+
+
+def raise_if_stopped(error: BaseException) -> None:
+    """Raise `Stopped` again where another error came of it."""
+    cause = cause_of(error)
+    if cause is not error:
+        raise cause from error
 
 
 @contextmanager

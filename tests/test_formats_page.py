@@ -17,6 +17,7 @@ from des_cli.model.machines import DES
 from des_cli.model.metric import Budget, MetricKey
 from des_cli.model.metrics import Added, AskedG
 from des_cli.model.motion import Motion
+from des_cli.model.notice import HARMS, NoticeName
 from des_cli.model.profile import Reduction
 from des_cli.pipeline import reduce_profile
 from des_cli.profiles_in.expression import FUNCTIONS
@@ -54,6 +55,13 @@ def test_units_are_those_of_the_table() -> None:
 def test_exit_codes() -> None:
     codes = re.findall(r"^\| (\d+) \|", section("Exit codes"), re.M)
     assert [int(code) for code in codes] == [int(code) for code in ExitCode]
+
+
+def test_notices_and_which_of_them_warn_of_harm() -> None:
+    rows = re.findall(r"^\| `([\w-]+)` \| (yes)? ?\|", section("Notices"), re.M)
+    # What becomes of an earlier output is no word on the run.
+    assert {name for name, _ in rows} == {*get_args(NoticeName)} - {"earlier"}
+    assert [name for name, harm in rows if harm] == list(HARMS)
 
 
 def test_functions_of_expressions() -> None:

@@ -21,7 +21,7 @@ from des_cli.cli.console import DEBUG_VARIABLE, Console
 from des_cli.cli.options import color_option, verbosity_options
 from des_cli.cli.terminal import give_up
 from des_cli.errors import ExitCode, Failure
-from des_cli.signals import raise_if_stopped, stopping
+from des_cli.signals import cause_of, stopping
 
 COMMANDS = (
     "reduce",
@@ -93,11 +93,7 @@ class Program(click.Group):
 
 def _end(console: Console, error: BaseException) -> ExitCode:
     """Print how an exception ends, and return its exit code."""
-    try:
-        raise_if_stopped(error)
-    except KeyboardInterrupt as stopped:
-        error = stopped
-    failure = Failure.of(error)
+    failure = Failure.of(cause_of(error))
     console.failure(failure)
     if isinstance(error, OSError) or failure.exit_code == ExitCode.READER_GONE:
         give_up(sys.stdout)

@@ -32,8 +32,6 @@ STANDING = (
 )
 """What is told of the machine that is to play a table."""
 
-DEFAULT_MACHINE = "des"
-
 LARGEST = Caps(mib=1024)
 """Table that is read: ten million rows are no ride."""
 
@@ -97,7 +95,7 @@ def verify(
             codes.append(_told(console, target, verdict, fail_on, form))
             facts = _facts(verdict, codes[-1])
         if form == "json":
-            _write(console, json.dumps({"target": target, "ok": not facts["exit_code"], **facts}))
+            write_line(json.dumps({"target": target, "ok": not facts["exit_code"], **facts}))
     # The worst of several: a table that is not to be played before a file that is none.
     return max(codes)
 
@@ -112,24 +110,23 @@ def _verdict(
 
     from des_cli.model.machine import Seat
     from des_cli.model.machines import MACHINES
-    from des_cli.profiles_in.source import read_source
+    from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE
+    from des_cli.profiles_in.source import STDIN_LABEL, read_source
     from des_cli.release.stored import check_stored_run, check_stored_table
 
     start = np.array([given.get(quantity, math.nan) for quantity in STARTS])
-    is_run = target != STANDARD_STREAM and Path(target).is_dir()
-    if is_run:
+    if target == STANDARD_STREAM:
+        assert stdin is not None, "it was read"
+        data, label = stdin, STDIN_LABEL
+    elif Path(target).is_dir():
         _refuse_of_run(given)
         return check_stored_run(target, machine, start)
-    data = (
-        stdin
-        if target == STANDARD_STREAM
-        else read_source(Path(target), target, LARGEST.mib, pipes=True)
-    )
-    assert data is not None, "stdin was read"
+    else:
+        data, label = read_source(Path(target), target, LARGEST.mib, pipes=True), target
     seat = Seat()
     return check_stored_table(
         data,
-        "stdin" if target == STANDARD_STREAM else target,
+        label,
         machine or MACHINES[DEFAULT_MACHINE],
         Seat(
             given.get(("seat_yaw", "angle"), seat.yaw),
@@ -160,7 +157,7 @@ def _told(
     if verdict.failed or refused:
         return ExitCode.NOT_RELEASED
     if form == "text":
-        _write(console, _line(target, verdict))
+        write_line(_line(target, verdict))
     return ExitCode.DONE
 
 
@@ -194,8 +191,3 @@ def _facts(verdict: Verdict, code: ExitCode) -> dict[str, Any]:
             for check in verdict.checks
         ],
     }
-
-
-def _write(console: Console, line: str) -> None:
-    with console.aside():
-        write_line(line)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Literal, TypeAlias
 
 NoticeName: TypeAlias = Literal[
@@ -27,20 +25,19 @@ NoticeName: TypeAlias = Literal[
 ]
 """What a notice is called, the same in every version."""
 
-HARMS: Mapping[str, str] = MappingProxyType(
-    {
-        "worse": "what is felt got worse than in the profile, by any of its measures",
-        "turning": "the written table turns the seat harder than the desired motion",
-        "g-jump": "the G of the written table jumps further than the desired motion's",
-        "start": "the written table does not start where the profile does",
-        "geometry": "the machine that it is checked against makes other G of the table",
-        "felt": "the seat's rate or G is far from the profile's, and no budget bounds it",
-        "ill-posed": "nothing holds the rates of the joints back",
-        "bought": "a component of the cross-coupling grew",
-        "damped": "the joints cannot follow the asked rates",
-    }
+HARMS: tuple[NoticeName, ...] = (
+    "worse",
+    "turning",
+    "g-jump",
+    "start",
+    "geometry",
+    "felt",
+    "ill-posed",
+    "bought",
+    "damped",
 )
-"""Those that warn of harm to the occupant or to what the maneuver is for, and of what."""
+"""Those that warn of harm to the occupant or to what the maneuver is for; what each means
+stands in ``docs/formats.md``."""
 
 
 @dataclass(frozen=True, slots=True)

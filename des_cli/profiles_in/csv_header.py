@@ -159,10 +159,15 @@ def lines_of(text: str) -> Iterator[str]:
     """
     start = 0
     while start < len(text):
-        end = _LINE_END.search(text, start)
-        stop = end.end() if end else len(text)
+        stop = _next_line(text, start)
         yield text[start:stop]
         start = stop
+
+
+def _next_line(text: str, start: int) -> int:
+    """Return where the line after the one that starts here begins."""
+    end = _LINE_END.search(text, start)
+    return end.end() if end else len(text)
 
 
 class _Lines:
@@ -187,8 +192,7 @@ class _Lines:
         return self
 
     def __next__(self) -> str:
-        end = _LINE_END.search(self._text, self.offset)
-        stop = end.end() if end else len(self._text)
+        stop = _next_line(self._text, self.offset)
         if stop == self.offset:
             raise StopIteration
         line = self._text[self.offset : stop]

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from des_cli.model.arrays import Floats
 from des_cli.model.coriolis import COMPONENTS, Component
-from des_cli.model.felt import G_AXES, Felt, RateAxis, TurningAxis
-from des_cli.model.loads import JointLoad
+from des_cli.model.felt import G_AXES, Felt, RateAxis, RateSizes, TurningAxis, TurningSizes
+from des_cli.model.loads import Driven
 from des_cli.model.machine import JOINTS
 from des_cli.model.metric import METRICS
 from des_cli.model.metrics import Metrics
@@ -145,16 +145,22 @@ def _states(motion: Motion) -> Floats:
 
 def _coriolis(claim: Claim, told: Metrics) -> Numbers:
     for component in COMPONENTS:
-        part = told.coriolis.parts[component.key]
-        values = [_part(each, component) for each in (claim.made, claim.after)]
-        before, after = (_rms(claim, each) for each in values)
-        name = component.key
-        yield f"{name}.rms_before", part.sizes.rms.before, before
-        yield f"{name}.rms_after", part.sizes.rms.after, after
-        yield f"{name}.peak_before", part.sizes.peak.before, _peak(values[0])
-        yield f"{name}.peak_after", part.sizes.peak.after, _peak(values[1])
+        key, part = component.key, told.coriolis.parts[component.key]
+        old, new = (_part(each, component) for each in (claim.made, claim.after))
+        yield from _sizes(claim, key, part.sizes, old, new)
+        before = _rms(claim, old)
         if before > UNCOUPLED:
-            yield f"{name}.reduction", part.reduction, 1.0 - (after / before) ** 2
+            yield f"{key}.reduction", part.reduction, 1.0 - (_rms(claim, new) / before) ** 2
+
+
+def _sizes(
+    claim: Claim, name: str, told: RateSizes | TurningSizes, old: Floats, new: Floats
+) -> Numbers:
+    """Yield root mean square and peak of values at all states, before and after."""
+    yield f"{name}.rms_before", told.rms.before, _rms(claim, old)
+    yield f"{name}.rms_after", told.rms.after, _rms(claim, new)
+    yield f"{name}.peak_before", told.peak.before, _peak(old)
+    yield f"{name}.peak_after", told.peak.after, _peak(new)
 
 
 def _part(felt: seat.Felt, component: Component) -> Floats:
@@ -166,39 +172,31 @@ def _part(felt: seat.Felt, component: Component) -> Floats:
 
 def _felt(claim: Claim, told: Felt) -> Numbers:
     before, after = claim.before, claim.after
-    for axis, old, new in zip(
-        get_args(RateAxis), _and_length(before.rate), _and_length(after.rate), strict=True
-    ):
-        rate = told.seat_rate[axis]
-        yield f"seat_rate.{axis}.rms_before", rate.rms.before, _rms(claim, old)
-        yield f"seat_rate.{axis}.rms_after", rate.rms.after, _rms(claim, new)
-        yield f"seat_rate.{axis}.peak_before", rate.peak.before, _peak(old)
-        yield f"seat_rate.{axis}.peak_after", rate.peak.after, _peak(new)
-    for turning_axis, old, new in zip(
-        get_args(TurningAxis), _and_length(before.turning), _and_length(after.turning), strict=True
-    ):
-        turning = told.seat_angular_acceleration[turning_axis]
-        yield f"turning.{turning_axis}.rms_before", turning.rms.before, _rms(claim, old)
-        yield f"turning.{turning_axis}.rms_after", turning.rms.after, _rms(claim, new)
-        yield f"turning.{turning_axis}.peak_before", turning.peak.before, _peak(old)
-        yield f"turning.{turning_axis}.peak_after", turning.peak.after, _peak(new)
+    turning = told.seat_angular_acceleration
+    named: list[tuple[str, RateSizes | TurningSizes]] = [
+        *((f"seat_rate.{each}", told.seat_rate[each]) for each in get_args(RateAxis)),
+        *((f"turning.{each}", turning[each]) for each in get_args(TurningAxis)),
+    ]
+    olds, news = ((*_and_length(felt.rate), *_and_length(felt.turning)) for felt in (before, after))
+    for (name, sizes), old, new in zip(named, olds, news, strict=True):
+        yield from _sizes(claim, name, sizes, old, new)
     onsets = [
         largest_onsets(motion, each)
         for motion, each in ((claim.requested, before), (claim.modified, after))
     ]
-    for i, g_axis in enumerate(G_AXES):
-        sizes, old, new = told.seat_g[g_axis], before.g[i], after.g[i]
-        yield f"seat_g.{g_axis}.peak_before", sizes.peak.before, _peak(old)
-        yield f"seat_g.{g_axis}.peak_after", sizes.peak.after, _peak(new)
-        yield f"seat_g.{g_axis}.min_before", sizes.least.before, float(np.min(old))
-        yield f"seat_g.{g_axis}.min_after", sizes.least.after, float(np.min(new))
-        yield f"seat_g.{g_axis}.max_before", sizes.largest.before, float(np.max(old))
-        yield f"seat_g.{g_axis}.max_after", sizes.largest.after, float(np.max(new))
-        yield f"seat_g.{g_axis}.onset_before", sizes.onset.before, float(onsets[0][i])
-        yield f"seat_g.{g_axis}.onset_after", sizes.onset.after, float(onsets[1][i])
-        yield f"seat_g.{g_axis}.jump_before", sizes.jump.before, _jump(old)
-        yield f"seat_g.{g_axis}.jump_after", sizes.jump.after, _jump(new)
-        yield f"seat_g.{g_axis}.rms_error", sizes.rms_error_g, _rms(claim, new - old)
+    for i, axis in enumerate(G_AXES):
+        g, old, new = told.seat_g[axis], before.g[i], after.g[i]
+        yield f"seat_g.{axis}.peak_before", g.peak.before, _peak(old)
+        yield f"seat_g.{axis}.peak_after", g.peak.after, _peak(new)
+        yield f"seat_g.{axis}.min_before", g.least.before, float(np.min(old))
+        yield f"seat_g.{axis}.min_after", g.least.after, float(np.min(new))
+        yield f"seat_g.{axis}.max_before", g.largest.before, float(np.max(old))
+        yield f"seat_g.{axis}.max_after", g.largest.after, float(np.max(new))
+        yield f"seat_g.{axis}.onset_before", g.onset.before, float(onsets[0][i])
+        yield f"seat_g.{axis}.onset_after", g.onset.after, float(onsets[1][i])
+        yield f"seat_g.{axis}.jump_before", g.jump.before, _jump(old)
+        yield f"seat_g.{axis}.jump_after", g.jump.after, _jump(new)
+        yield f"seat_g.{axis}.rms_error", g.rms_error_g, _rms(claim, new - old)
 
 
 def _limits(claim: Claim, told: Metrics) -> Numbers:
@@ -209,8 +207,7 @@ def _limits(claim: Claim, told: Metrics) -> Numbers:
         found = magnitudes(motion)
         step = np.abs(motion.rate_step)
         for j, (joint, limit) in enumerate(zip(JOINTS, claim.profile.machine.limits, strict=True)):
-            load: JointLoad = loads[joint]
-            name = f"{which}.{joint}"
+            load, name = loads[joint], f"{which}.{joint}"
             yield f"{name}.rate", load.rate_peak_rad_s, _peak(found["rate"][:, j])
             acceleration = max(_peak(found["acceleration"][:, j]), _by_position(motion, j))
             yield f"{name}.acceleration", load.acceleration_peak_rad_s2, acceleration
@@ -220,13 +217,10 @@ def _limits(claim: Claim, told: Metrics) -> Numbers:
             share = float(motion.step @ full / np.sum(motion.step))
             yield f"{name}.at_acceleration_limit", load.at_acceleration_limit, share
             yield f"{name}.rate_step", load.rate_step_rad_s, _peak(step[:, j])
-            for driven, own in (
-                ("rate", limit.rate),
-                ("acceleration", limit.acceleration),
-                ("jerk", limit.jerk),
-            ):
+            for driven in get_args(Driven):
+                own = getattr(limit, driven)
                 if math.isfinite(own):
-                    yield f"{name}.{driven}_limit", load.limit(driven), own  # type: ignore[arg-type]
+                    yield f"{name}.{driven}_limit", load.limit(driven), own
 
 
 def _by_position(motion: Motion, j: int) -> float:

@@ -50,7 +50,7 @@ def test_a_table_comes_on_stdin(invoke, stored: str, tmp_path: Path) -> None:
     assert invoke("verify", "-", input=data).exit_code == 0
     cut = invoke("verify", "-", input=data[:-9])
     assert cut.exit_code == 3
-    assert cut.stderr.startswith("stdin: is no command table: its last line does not end")
+    assert cut.stderr.startswith("<stdin>: is no command table: its last line does not end")
 
 
 def test_a_changed_file_ends_with_3_and_names_it(invoke, stored: str, tmp_path: Path) -> None:

@@ -9,7 +9,6 @@ import stat
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,6 +21,7 @@ from des_cli.runs_out.exchange import exchange
 from des_cli.runs_out.manifest import is_run
 from des_cli.runs_out.run_folder import discard_run, read_run, write_run
 from des_cli.runs_out.tables import trajectory_columns
+from tests.support.fuse import Fuse
 from tests.support.run_files import entry, rewrite, tree
 
 MakeRun = Callable[..., Run]
@@ -113,20 +113,6 @@ def test_an_empty_folder_is_used_and_a_file_is_refused(
     with pytest.raises(FileAccessError, match="is a file"):
         write_run(synthetic_run(), tmp_path / "file", overwrite=True)
     assert (tmp_path / "file").read_bytes() == b"data"
-
-
-class Fuse:
-    """Makes the n-th call of a function of ``os`` fail."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, name: str, blow_at: int) -> None:
-        self.calls, self.blow_at, self.really = 0, blow_at, getattr(os, name)
-        monkeypatch.setattr(os, name, self)
-
-    def __call__(self, *args: Any, **options: Any) -> Any:
-        self.calls += 1
-        if self.calls == self.blow_at:
-            raise KeyboardInterrupt
-        return self.really(*args, **options)
 
 
 @pytest.mark.parametrize(
