@@ -1,14 +1,17 @@
 """Read every file of some folders as a profile, and tell which end otherwise than in words.
 
+    python scripts/try_files.py FOLDER... [--names FILE]...
+
 Each file is reduced in a process of its own, forked from one that has everything imported,
 with bounds on memory and time. What is not right: a traceback or an exit code of a bug, more
 than ``MEMORY_MIB`` or ``SECONDS``, a table after a refusal, or anything beside the output.
-A text file whose name ends with ``.txt`` holds a name a line: each is tried as the name of a
-profile in YAML, and of a CSV file.
+A file of names holds one a line, such as the big list of naughty strings: each is tried as
+the name of a profile in YAML, and of a CSV file.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import resource
@@ -32,40 +35,45 @@ NAMED = (
 TABLE = b"t_s,arm_rpm,fork_deg,cab_deg\n0,8,0,30\n0.1,8,0.1,29\n0.2,8,0.4,28\n0.3,8,0.9,27\n"
 
 
-def main(folders: list[str]) -> int:
-    """Try the files of folders; print what is not right, and how many ended in which way."""
+def main() -> int:
+    """Try what is asked; print what is not right, and how many ended in which way."""
     import des_cli.batch.execution
     import des_cli.pipeline
     import des_cli.profiles_in.load
     import des_cli.runs_out.run_folder  # noqa: F401
 
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folders", nargs="*", type=Path, metavar="FOLDER")
+    parser.add_argument("--names", action="append", default=[], type=Path, metavar="FILE")
+    options = parser.parse_args()
     ends: Counter[str] = Counter()
     wrong = 0
-    for label, file, data in _inputs(folders):
+    for label, file, data in (*_files(options.folders), *_named(options.names)):
         end, faults = _try(file, data)
         ends[end] += 1
         for fault in faults:
             wrong += 1
-            print(f"{label}: {fault}")
+            print(f"{label}: {fault}", flush=True)
     print(", ".join(f"{count} with {end}" for end, count in sorted(ends.items())))
     print(f"{wrong} not right")
     return bool(wrong)
 
 
-def _inputs(folders: list[str]) -> Iterator[tuple[str, str, bytes]]:
+def _files(folders: list[Path]) -> Iterator[tuple[str, str, bytes]]:
     """Yield a label, a file name and its content."""
-    for path in sorted(path for folder in folders for path in Path(folder).rglob("*")):
-        if not path.is_file():
-            continue
-        if path.suffix == ".txt":
-            for number, line in enumerate(path.read_text("utf-8").split("\n"), start=1):
-                if not line.startswith("#") or number > 1:
-                    text = NAMED.format(name=json.dumps(line))
-                    yield f"{path}:{number} (YAML)", "named.yaml", text.encode()
-                    safe = line.replace("/", "_").replace("\0", "_").encode()[:200]
-                    yield f"{path}:{number} (CSV)", f"{safe.decode(errors='ignore')}.csv", TABLE
-        else:
+    for path in sorted(path for folder in folders for path in folder.rglob("*")):
+        if path.is_file():
             yield str(path), path.name, path.read_bytes()
+
+
+def _named(lists: list[Path]) -> Iterator[tuple[str, str, bytes]]:
+    """Yield the same of files made of names."""
+    for path in lists:
+        for number, line in enumerate(path.read_text("utf-8").split("\n"), start=1):
+            text = NAMED.format(name=json.dumps(line))
+            yield f"{path}:{number} (YAML)", "named.yaml", text.encode()
+            safe = line.replace("/", "_").replace("\0", "_").encode()[:200]
+            yield f"{path}:{number} (CSV)", f"{safe.decode(errors='ignore')}.csv", TABLE
 
 
 def _try(name: str, data: bytes) -> tuple[str, list[str]]:
@@ -116,4 +124,4 @@ def _reduce(home: Path, name: str) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

@@ -29,7 +29,6 @@ import numpy as np
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Seat
 from des_cli.model.machines import DES
-from des_cli.model.metric import Budget, MetricKey
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Ends, Objective, Reduction
 from des_cli.reduction.fidelity import Deviation
@@ -38,6 +37,7 @@ from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.limits import measure_peaks
 from tests.support.bridge import check, peer_task
 from tests.support.ipopt_spline import Answer, cpu_seconds, solve
+from tests.support.random_problems import RANGES, random_budgets
 from tests.support.spline_task import Task
 
 ROWS = (101, 151)
@@ -46,20 +46,6 @@ ROWS = (101, 151)
 DURATIONS_S = (3.0, 20.0)
 JERKS_PER_S = (1.0, 2.0, 5.0, math.inf)
 """Jerk limits over acceleration limits, each as likely."""
-
-RANGES: dict[MetricKey, tuple[float, float]] = {
-    "joint_deviation_relative": (0.01, 0.1),
-    "joint_deviation_relative_squared": (1e-4, 1e-2),
-    "seat_rate_deviation_relative": (0.03, 0.3),
-    "seat_g_deviation_relative": (0.01, 0.1),
-    "seat_g_rms_error_g": (0.02, 0.2),
-    "seat_angular_acceleration_deviation_relative": (0.1, 0.6),
-    "seat_angular_acceleration_rms_error_rad_s2": (0.05, 0.5),
-    "attitude_error_max_deg": (2.0, 10.0),
-    "seat_angular_acceleration_rms_ratio": (0.7, 1.2),
-    "seat_angular_acceleration_peak_ratio": (0.7, 1.2),
-}
-"""Least and most of each kind of budget."""
 
 ENDS: dict[Ends, float] = {
     "match-start": 0.55,
@@ -108,11 +94,7 @@ def random_task(seed: int) -> FreeTask:
     motion = random_motion(draw)
     per_s = draw.choice(JERKS_PER_S)
     limits: Any = tuple(replace(limit, jerk=per_s * limit.acceleration) for limit in DES.limits)
-    kinds = list(RANGES)
-    chosen = draw.choice(len(kinds), size=draw.integers(1, 2, endpoint=True), replace=False)
-    budget = tuple(
-        Budget(kinds[i], math.exp(draw.uniform(*np.log(RANGES[kinds[i]])))) for i in chosen
-    )
+    budget = random_budgets(draw, list(RANGES))
     ends = list(ENDS)[draw.choice(len(ENDS), p=list(ENDS.values()))]
     objective = list(OBJECTIVES)[draw.choice(len(OBJECTIVES), p=list(OBJECTIVES.values()))]
     reduction = Reduction(budget=budget, ends=ends, objective=objective)

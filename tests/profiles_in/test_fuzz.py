@@ -145,7 +145,6 @@ def problems(read: Callable[[bytes], None], data: bytes) -> list[str]:
 @pytest.mark.parametrize(
     ("read", "text", "share"), READERS, ids=["YAML", "CSV", "expression", "machine", "table"]
 )
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_nothing_but_an_error_of_the_tool_comes_out(
     read: Callable[[bytes], None], text: str, share: float
 ) -> None:

@@ -45,8 +45,8 @@ def cases() -> Iterator[Case]:
     for number, (text, word) in enumerate(_csv()):
         yield Case(f"c{number:03d}.csv", text.encode(), word)
     for number, (data, word) in enumerate(_bytes()):
-        yield Case(f"b{number:03d}.yaml", data, word)
-        yield Case(f"b{number:03d}.csv", data, "")
+        yield Case(f"b{number:03d}.yaml", data, word[0])
+        yield Case(f"b{number:03d}.csv", data, word[1])
 
 
 # fmt: off
@@ -135,17 +135,21 @@ NO_EXPRESSIONS = (
 
 def _yaml() -> Iterator[tuple[str, str]]:
     places = (
-        ("stop_s: 1", "stop_s", "time"),
-        ("step_s: 0.05", "step_s", "time"),
-        ("arm_deg: 0", "arm_deg", "initial"),
-        ("r2: 1", "r2", "reduction"),
+        ("stop_s: 1", "time.stop_s"),
+        ("step_s: 0.05", "time.step_s"),
+        ("arm_deg: 0", "initial.arm_deg"),
+        ("r2: 1", "reduction.r2"),
     )
-    for old, key, _ in places:
+    words = {"!": "the tag", "&": "the anchor &a", "*": "the alias *a"}
+    for old, path in places:
         for value in NO_NUMBERS:
             text = f'"{value}"' if "'" in value else value
-            if key == "r2" and value == "1,5":
-                continue  # a list's comma in a flow mapping
-            yield YAML.replace(old, f"{key}: {text}"), ""
+            section, key = path.split(".")
+            if value == "1,5":  # the comma of a flow mapping: 5 is the next key
+                if key != "r2":
+                    yield YAML.replace(old, f"{key}: {text}"), f"{section}.5: is not a key"
+                continue
+            yield YAML.replace(old, f"{key}: {text}"), words.get(value[0], path)
     for expression in NO_EXPRESSIONS:
         escaped = expression.replace("\\n", "\n").replace("'", "''")
         yield YAML.replace('"30 - 2.5*t"', f"'{escaped}'"), "cab_deg"
@@ -155,8 +159,8 @@ def _yaml() -> Iterator[tuple[str, str]]:
     yield YAML.replace("fork_deg", "fork"), "fork"
     yield YAML.replace("fork_deg", "fork_parsec"), "fork_parsec"
     yield YAML + "extra: 1\n", "extra"
-    yield YAML + "--- \n" + YAML, ""
-    yield "&a " + YAML, ""
+    yield YAML + "--- \n" + YAML, "a second document"
+    yield "&a " + YAML, "the anchor &a"
     yield YAML.replace("initial: {arm_deg: 0}", "initial: {<<: {arm_deg: 0}}"), "<<"
     yield YAML.replace("stop_s: 1", "stop_s: -1"), "stop_s"
     yield YAML.replace("stop_s: 1", "stop_s: 1e300"), "stop_s"
@@ -200,52 +204,60 @@ NO_CELLS = (
 
 
 def _csv() -> Iterator[tuple[str, str]]:
+    words = {"1\x00": "holds a NUL byte", "\x00": "holds a NUL byte"}
+    words |= {"1,2": "has 5 cells", '"': "is not a CSV row"}
     for cell in NO_CELLS:
         for column in (0, 2):
             rows = [row.split(",") for row in ROWS]
             rows[4][column] = cell
-            yield csv_of([",".join(row) for row in rows]), ""
+            word = words.get(cell, HEADER.split(",")[column])
+            yield csv_of([",".join(row) for row in rows]), f".csv:6: {word}"
     yield csv_of(ROWS, "t_s,arm_rpm,fork_deg,fork_deg"), "fork_deg"
     yield csv_of(ROWS, "t_s,arm_rpm,fork_deg,fork_rad"), "fork"
-    yield csv_of(ROWS, "t,arm,fork,cab"), ""
-    yield csv_of(ROWS, "t_s,arm_rpm,fork_furlong,cab_deg"), ""
-    yield csv_of(ROWS, "arm_rpm,fork_deg,cab_deg,x"), ""
-    yield csv_of([], HEADER), ""
-    yield csv_of(ROWS[:1], HEADER), ""
+    yield csv_of(ROWS, "t,arm,fork,cab"), "needs its unit"
+    yield csv_of(ROWS, "t_s,arm_rpm,fork_furlong,cab_deg"), "the unit furlong"
+    yield csv_of(ROWS, "arm_rpm,fork_deg,cab_deg,x"), "a column is missing: t_s"
+    yield csv_of([], HEADER), "no rows"
+    yield csv_of(ROWS[:1], HEADER), "one row"
     yield csv_of([*ROWS[:4], *ROWS[3:]]), "t_s"
     yield csv_of([*ROWS[:4], ROWS[2], *ROWS[4:]]), "t_s"
-    yield csv_of([*ROWS[:4], ROWS[4] + ",1", *ROWS[5:]]), ""
-    yield csv_of([*ROWS[:4], ROWS[4].rsplit(",", 1)[0], *ROWS[5:]]), ""
-    yield csv_of([row.replace(".", ",").replace(",", ";", 0) for row in ROWS]), ""
+    yield csv_of([*ROWS[:4], ROWS[4] + ",1", *ROWS[5:]]), "6: has 5 cells"
+    yield csv_of([*ROWS[:4], ROWS[4].rsplit(",", 1)[0], *ROWS[5:]]), "6: has 3 cells"
+    yield csv_of([row.replace(".", ",").replace(",", ";", 0) for row in ROWS]), "a decimal comma"
     # Cut inside the last number, which would still be one.
-    yield csv_of(ROWS)[:-2], ""
-    yield csv_of(ROWS)[:-3], ""
-    yield ",".join(["x"] * 20_000) + "\n" + ",".join(["1"] * 20_000) + "\n", ""
-    yield "\n" * 1000, ""
-    yield "#" * 5000, ""
-    yield '"' + csv_of(ROWS), ""
+    yield csv_of(ROWS)[:-2], "cut inside"
+    yield csv_of(ROWS)[:-3], "cut inside"
+    yield ",".join(["x"] * 20_000) + "\n" + ",".join(["1"] * 20_000) + "\n", "has neither"
+    yield "\n" * 1000, "is empty"
+    yield "#" * 5000, "is empty"
+    yield '"' + csv_of(ROWS), "is not a CSV header"
 
 
-def _bytes() -> Iterator[tuple[bytes, str]]:
-    yield b"", ""
-    yield b"\x00" * 100, ""
-    yield b"\xff\xfe" + YAML.encode("utf-16-le"), ""
-    yield b"\xff" + YAML.encode(), ""
-    yield YAML.encode().replace(b"small", b"sm\xe4ll"), ""
-    yield b"[" * 10_000, ""
-    yield b"{" * 10_000, ""
-    yield b"- " * 10_000, ""
-    yield b"a: " * 3000, ""
-    yield b"PK\x03\x04" + bytes(range(256)), ""
-    yield b"%PDF-1.7\n" + bytes(range(128, 256)), ""
-    yield b"PAR1" + bytes(64), ""
-    yield b"\x89PNG\r\n\x1a\n", ""
-    yield b"<!DOCTYPE html><html></html>", ""
-    yield b'{"name": "x"}', ""
-    yield b"null", ""
-    yield b"!!python/object/apply:os.system ['true']", ""
-    yield b"a: &x [*x, *x]", ""
-    yield b"\x1b[2J\x07", ""
+NEITHER = "has neither joint commands"
+BLANKS = "are separated by blanks"
+
+
+def _bytes() -> Iterator[tuple[bytes, tuple[str, str]]]:
+    """Yield bytes, and a word of the refusal as YAML and as CSV."""
+    yield b"", ("is empty", "is empty")
+    yield b"\x00" * 100, ("a NUL byte", "a NUL byte")
+    yield b"\xff\xfe" + YAML.encode("utf-16-le"), ("UTF-16", "UTF-16")
+    yield b"\xff" + YAML.encode(), ("not UTF-8 text (byte 0xff)", BLANKS)
+    yield YAML.encode().replace(b"small", b"sm\xe4ll"), ("2: is not UTF-8 text (byte 0xe4)", BLANKS)
+    yield b"[" * 10_000, ("nested", NEITHER)
+    yield b"{" * 10_000, ("a key must be a name", NEITHER)
+    yield b"- " * 10_000, ("nested", BLANKS)
+    yield b"a: " * 3000, ("is not valid YAML", BLANKS)
+    yield b"PK\x03\x04" + bytes(range(256)), ("a NUL byte", "a NUL byte")
+    yield b"%PDF-1.7\n" + bytes(range(128, 256)), ("2: is not UTF-8 text (byte 0x80)", NEITHER)
+    yield b"PAR1" + bytes(64), ("a NUL byte", "a NUL byte")
+    yield b"\x89PNG\r\n\x1a\n", ("not UTF-8 text (byte 0x89)", NEITHER)
+    yield b"<!DOCTYPE html><html></html>", ("is not a profile", BLANKS)
+    yield b'{"name": "x"}', ("format: is missing", NEITHER)
+    yield b"null", ("is not a profile", NEITHER)
+    yield b"!!python/object/apply:os.system ['true']", ("the tag", BLANKS)
+    yield b"a: &x [*x, *x]", ("the anchor &x", NEITHER)
+    yield b"\x1b[2J\x07", ("is not valid YAML", NEITHER)
 
 
 # fmt: off

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,14 +18,27 @@ from tests.support.claims import profile_of
 
 RANGES: dict[MetricKey, tuple[float, float]] = {
     "joint_deviation_relative": (0.01, 0.1),
+    "joint_deviation_relative_squared": (1e-4, 1e-2),
     "seat_rate_deviation_relative": (0.03, 0.3),
+    "seat_g_deviation_relative": (0.01, 0.1),
     "seat_g_rms_error_g": (0.02, 0.2),
+    "seat_angular_acceleration_deviation_relative": (0.1, 0.6),
     "seat_angular_acceleration_rms_error_rad_s2": (0.05, 0.5),
     "attitude_error_max_deg": (2.0, 10.0),
+    "seat_angular_acceleration_rms_ratio": (0.7, 1.2),
     "seat_angular_acceleration_peak_ratio": (0.7, 1.2),
 }
 """Least and most of each kind of budget."""
 
+USUAL: tuple[MetricKey, ...] = (
+    "joint_deviation_relative",
+    "seat_rate_deviation_relative",
+    "seat_g_rms_error_g",
+    "seat_angular_acceleration_rms_error_rad_s2",
+    "attitude_error_max_deg",
+    "seat_angular_acceleration_peak_ratio",
+)
+"""The kinds of which these problems have one or two."""
 
 ENDS = ("match-start", "free", "match-rates", "match-both")
 
@@ -34,6 +48,14 @@ def random_profile(seed: int) -> Profile:
     draw = np.random.default_rng(seed)
     motion = _motion(draw)
     return profile_of(motion, _reduction(draw), _machine(draw))
+
+
+def random_budgets(draw: np.random.Generator, kinds: Sequence[MetricKey]) -> tuple[Budget, ...]:
+    """Return one or two budgets, each of another kind."""
+    chosen = draw.choice(len(kinds), size=draw.integers(1, 2, endpoint=True), replace=False)
+    return tuple(
+        Budget(kinds[i], math.exp(draw.uniform(*np.log(RANGES[kinds[i]])))) for i in chosen
+    )
 
 
 def _motion(draw: np.random.Generator) -> Motion:
@@ -94,11 +116,7 @@ def _reduction(draw: np.random.Generator) -> Reduction:
         "r2": np.full(3, math.exp(draw.uniform(-3.0, 2.0))),
     }
     if control == "free" or draw.random() < 0.05:
-        kinds = list(RANGES)
-        chosen = draw.choice(len(kinds), size=draw.integers(1, 3), replace=False)
-        options["budget"] = tuple(
-            Budget(kinds[i], math.exp(draw.uniform(*np.log(RANGES[kinds[i]])))) for i in chosen
-        )
+        options["budget"] = random_budgets(draw, USUAL)
     if draw.random() < 0.2:
         options |= {"lead_in": 8.0, "lead_out": 8.0}
     return Reduction(**options)
