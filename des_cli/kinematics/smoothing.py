@@ -131,7 +131,9 @@ def why_not_smooth(t: Floats, cutoff_hz: float) -> str:
     cutoff_hz : float
         [Hz]
     """
-    duration, step = float(t[-1] - t[0]), float(np.median(np.diff(t)))
+    duration, size = float(t[-1] - t[0]), _grid_size(t)
+    # that of the grid which is filtered: the median step is a little off it
+    step = duration / (size - 1)
     nyquist = 0.5 / step
     if cutoff_hz >= nyquist * (1.0 - _ROUNDING):
         return (
@@ -144,7 +146,7 @@ def why_not_smooth(t: Floats, cutoff_hz: float) -> str:
             f"and this one has {duration:.4g} s; give a cutoff of {SHORTEST / duration:.3g} Hz "
             "or more"
         )
-    if _grid_size(t) > MOST_CELLS:
+    if size > MOST_CELLS:
         return f"the record is {duration / step:.3g} of its usual steps long; close its gaps first"
     return ""
 

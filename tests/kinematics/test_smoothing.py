@@ -114,3 +114,13 @@ def test_what_cannot_be_smoothed_is_said_and_refused(
 
 def test_what_can_be_smoothed_has_no_sentence() -> None:
     assert why_not_smooth(T, 24.9) == why_not_smooth(T[:51], 2.0) == ""
+
+
+def test_it_is_the_grid_that_must_tell_the_cutoff() -> None:
+    """The usual step is shorter than the uniform grid's, on which the cutoff is just too fast."""
+    step = np.full(40, 0.2499)
+    step[-6:] = 0.251
+    t = np.concatenate([[0.0], np.cumsum(step)])
+    assert 0.5 / np.median(step) > 2.0 > 0.5 / np.mean(step)
+    assert why_not_smooth(t, 2.0).startswith("2 Hz is not below 1.999 Hz")
+    smooth_samples(t, np.sin(t)[:, None], 1.99)
