@@ -6,7 +6,6 @@ for a command, and for one profile of many.
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
@@ -174,7 +173,9 @@ class Failure:
                 return cls(ExitCode.FILE, ("not enough memory; use fewer samples or fewer --jobs",))
         first_line = (str(error).splitlines() or [""])[0]
         text = f"bug: {type(error).__name__}: {first_line}".rstrip(": ")
-        return cls(ExitCode.BUG, (text,), "".join(traceback.format_exception(error)))
+        from traceback import format_exception
+
+        return cls(ExitCode.BUG, (text,), "".join(format_exception(error)))
 
 
 def _operating_system_line(error: OSError) -> str:

@@ -18,8 +18,7 @@ from des_cli.model.solution import Iteration
 from des_cli.model.stage import OnStage, untold
 from des_cli.reduction.baseline import compare
 from des_cli.reduction.consistency import require_consistent
-from des_cli.reduction.desired import find_desired
-from des_cli.reduction.g_profile import require_makeable
+from des_cli.reduction.desired import find_desired, require_makeable
 from des_cli.reduction.lead import add_leads
 from des_cli.reduction.limits import find_occupant_violations, find_violations
 from des_cli.reduction.solve import Found, find_motion

@@ -4,7 +4,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
+
+from des_cli.cli.main import COMMANDS, program
 
 # Runs the command line in a fresh interpreter and prints, as the last line of
 # stderr, which of the watched modules it imported.
@@ -56,6 +59,26 @@ def test_help_leaves_numpy_unimported(
 ) -> None:
     heavy = {"numpy", "scipy", "pandas", "pyarrow", "matplotlib", "pydantic", "ruamel.yaml"}
     assert imported(heavy, *args, cwd=tmp_path, env=python_environment) == set()
+
+
+def test_help_says_of_each_command_what_that_says_of_itself_and_imports_none(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    modules = {f"des_cli.cli.{name}" for name in COMMANDS}
+    assert imported(modules, "--help", cwd=tmp_path, env=python_environment) == set()
+    for name, said in COMMANDS.items():
+        command = program.get_command(click.Context(program), name)
+        assert command is not None
+        assert command.get_short_help_str(limit=200) == said
+
+
+def test_factors_leave_the_free_motion_and_filters_unimported(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    watched = {"des_cli.reduction.free.method", "des_cli.reduction.g_profile"}
+    watched |= {"scipy.signal", "scipy.interpolate"}
+    args = ["reduce", "cobra", "--set", "time.step_s=0.25", "-o", "x.csv"]
+    assert imported(watched, *args, cwd=tmp_path, env=python_environment) == set()
 
 
 def test_package_leaves_numpy_unimported(python_environment: dict[str, str]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import secrets
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -49,7 +48,7 @@ class Console:
         self.color = False
         self._log_open = False
         # Stands for the escape character of our own colors; nobody else can know it.
-        self._escape = f"\0{secrets.token_hex(8)}\0"
+        self._escape = f"\0{os.urandom(8).hex()}\0"
         self._line = StatusLine(None)
         self.choose_color("auto")
 

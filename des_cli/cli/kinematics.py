@@ -10,7 +10,8 @@ import click
 
 from des_cli.batch.job import TableFormat
 from des_cli.batch.source import Source
-from des_cli.cli.options import TABLE_FORMATS, verbosity_options
+from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.options import TABLE_FORMATS
 from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_of
 from des_cli.cli.state_options import in_si, option_name, state_options
 from des_cli.cli.stdout import write_data

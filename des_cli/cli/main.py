@@ -17,24 +17,25 @@ from typing import Any, NoReturn
 import click
 
 from des_cli import __version__
+from des_cli.cli.common_options import color_option, verbosity_options
 from des_cli.cli.console import DEBUG_VARIABLE, Console
-from des_cli.cli.options import color_option, verbosity_options
 from des_cli.cli.terminal import give_up
 from des_cli.errors import ExitCode, Failure
 from des_cli.signals import cause_of, stopping
 
-COMMANDS = (
-    "reduce",
-    "report",
-    "sweep",
-    "validate",
-    "verify",
-    "kinematics",
-    "profiles",
-    "machines",
-    "schema",
-)
-"""In the order of ``--help``; each is the module and the command of that name."""
+COMMANDS = {
+    "reduce": "Reduce the cross-coupling of profiles; write command tables.",
+    "report": "Put runs on one HTML page.",
+    "sweep": "Trade deviation for cross-coupling: a curve of optima.",
+    "validate": "Check profiles and name all of their problems.",
+    "verify": "Check a run or a command table before a machine loads it.",
+    "kinematics": "Show the kinematics of a state, or of a profile's motion.",
+    "profiles": "List the built-in profiles, or print one.",
+    "machines": "List the built-in machines, or print one.",
+    "schema": "Print the JSON Schema of YAML profiles.",
+}
+"""What ``--help`` says of each, in the order of use; each is the module and the command of that
+name, which ``--help`` need not import."""
 
 PROGRAM = "des-coriolis"
 
@@ -53,6 +54,11 @@ class Program(click.Group):
         command = getattr(import_module(f"des_cli.cli.{cmd_name}"), cmd_name)
         assert isinstance(command, click.Command)
         return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands without importing them."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
 
     def main(
         self,

@@ -12,7 +12,6 @@ from typing import Any, TypeVar
 
 import click
 
-from des_cli.cli.console import Console
 from des_cli.model.metric import STUDY_METRIC, metric_named
 from des_cli.model.notice import HARMS
 from des_cli.profiles_in.setting import Setting, value_of_option
@@ -27,40 +26,6 @@ ANY_HARM = "notice"
 
 DEFAULT_RUNS = "runs"
 """Where runs go, and where ``report`` looks for them."""
-
-
-def verbosity_options(command: F) -> F:
-    """Add ``-q`` and ``-v``, on the group and on every command alike."""
-    quiet = click.option(
-        "-q",
-        "--quiet",
-        is_flag=True,
-        expose_value=False,
-        callback=_on_quiet,
-        help="Print only warnings and errors.",
-    )
-    verbose = click.option(
-        "-v",
-        "--verbose",
-        count=True,
-        expose_value=False,
-        callback=_on_verbose,
-        help="Print a line for each iteration; twice: also the traceback of a bug.",
-    )
-    return quiet(verbose(command))
-
-
-def color_option(command: F) -> F:
-    """Add ``--color``; without it, a terminal without NO_COLOR has colors."""
-    return click.option(
-        "--color",
-        type=click.Choice(["auto", "always", "never"]),
-        default="auto",
-        show_default=True,
-        expose_value=False,
-        callback=_on_color,
-        help="Color the words on stderr; auto respects NO_COLOR.",
-    )(command)
 
 
 def text_or_json_option(text: str) -> Callable[[F], F]:
@@ -277,23 +242,3 @@ def without_percent(metric: str, most: str) -> str:
 def existing_folder(path: str) -> bool:
     """Whether an argument means a folder: it is one, or ends like one."""
     return path.endswith(("/", os.sep)) or Path(path).is_dir()
-
-
-def _console(context: click.Context) -> Console:
-    console = context.find_object(Console)
-    assert console is not None
-    return console
-
-
-def _on_quiet(context: click.Context, parameter: click.Parameter, value: bool) -> None:
-    if value:
-        _console(context).verbosity = -1
-
-
-def _on_verbose(context: click.Context, parameter: click.Parameter, value: int) -> None:
-    if value:
-        _console(context).verbosity = value
-
-
-def _on_color(context: click.Context, parameter: click.Parameter, value: str) -> None:
-    _console(context).choose_color(value)

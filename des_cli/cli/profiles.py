@@ -7,7 +7,8 @@ import json
 
 import click
 
-from des_cli.cli.options import text_or_json_option, verbosity_options
+from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.options import text_or_json_option
 from des_cli.cli.stdout import write_data
 
 

@@ -9,6 +9,7 @@ import click
 
 from des_cli.batch.job import Job, JobResult, Output, TableFormat
 from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     DEFAULT_RUNS,
@@ -17,7 +18,6 @@ from des_cli.cli.options import (
     fail_on_option,
     reduction_options,
     reduction_settings,
-    verbosity_options,
 )
 from des_cli.cli.source_options import (
     machine_option,

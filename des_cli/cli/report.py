@@ -7,8 +7,9 @@ from pathlib import Path
 import click
 
 from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
-from des_cli.cli.options import DEFAULT_RUNS, verbosity_options
+from des_cli.cli.options import DEFAULT_RUNS
 from des_cli.cli.stdout import write_data
 from des_cli.errors import Complaint, DesError, FileAccessError
 

@@ -6,7 +6,7 @@ import json
 
 import click
 
-from des_cli.cli.options import verbosity_options
+from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.stdout import write_data
 
 

@@ -9,13 +9,9 @@ import click
 
 from des_cli.batch.job import TableFormat
 from des_cli.batch.source import STANDARD_STREAM, Source
+from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import VERBOSE, Console
-from des_cli.cli.options import (
-    TABLE_FORMATS,
-    reduction_options_without,
-    reduction_settings,
-    verbosity_options,
-)
+from des_cli.cli.options import TABLE_FORMATS, reduction_options_without, reduction_settings
 from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_of
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.sweep_options import (

@@ -8,13 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
-from des_cli.cli.options import (
-    reduction_options,
-    reduction_settings,
-    text_or_json_option,
-    verbosity_options,
-)
+from des_cli.cli.options import reduction_options, reduction_settings, text_or_json_option
 from des_cli.cli.source_options import (
     machine_option,
     profile_argument,

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
-from des_cli.cli.options import fail_on_option, text_or_json_option, verbosity_options
+from des_cli.cli.options import fail_on_option, text_or_json_option
 from des_cli.cli.source_options import machine_option, read_stdin
 from des_cli.cli.state_options import in_si, state_options
 from des_cli.cli.stdout import write_line

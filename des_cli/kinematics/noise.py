@@ -42,12 +42,12 @@ def suggest_smoothing(profile: Profile, requested: DesiredMotion) -> str:
     motion = requested.motion
     if profile.smooth_cutoff_hz <= CUTOFF_HZ or why_not_smooth(motion.t, CUTOFF_HZ):
         return ""
-    rate = motion.rate
+    rate, step = motion.rate, motion.step / (motion.t[-1] - motion.t[0])
+    often = step[1:] @ beyond_limits(motion.t, rate, profile.machine)
+    if not np.any(often > OFTEN):
+        return ""
     smooth, _, _ = smooth_samples(motion.t, rate, CUTOFF_HZ)
-    before = beyond_limits(motion.t, rate, profile.machine)
-    after = beyond_limits(motion.t, smooth, profile.machine)
-    step = motion.step / (motion.t[-1] - motion.t[0])
-    often, still = step[1:] @ before, step[1:] @ after
+    still = step[1:] @ beyond_limits(motion.t, smooth, profile.machine)
     change, size = (np.sqrt(np.mean(x**2, axis=0)) for x in (rate - smooth, rate))
     noisy = (often > OFTEN) & (still <= CURED * often) & (change <= SMALL * size)
     if not np.any(noisy):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.model.motion import DesiredMotion
 from des_cli.model.profile import GCommand, Profile
-from des_cli.reduction.g_profile import follow_g
 
 
 def find_desired(profile: Profile, *, divide: bool = True) -> DesiredMotion:
@@ -27,5 +26,16 @@ def find_desired(profile: Profile, *, divide: bool = True) -> DesiredMotion:
         If the profile asks for G of a machine whose arm does not turn about the vertical.
     """
     if isinstance(profile.command, GCommand):
+        # imported by the few profiles that need it
+        from des_cli.reduction.g_profile import follow_g
+
         return follow_g(profile, profile.command)
     return make_desired(profile, divide=divide)
+
+
+def require_makeable(profile: Profile) -> None:
+    """Refuse a requested G that no centrifuge makes; see ``g_profile.require_makeable_g``."""
+    if isinstance(profile.command, GCommand):
+        from des_cli.reduction.g_profile import require_makeable_g
+
+        require_makeable_g(profile, profile.command)

@@ -115,7 +115,7 @@ def follow_g(profile: Profile, command: GCommand) -> DesiredMotion:
     )
 
 
-def require_makeable(profile: Profile) -> None:
+def require_makeable_g(profile: Profile, command: GCommand) -> None:
     """Refuse a G that is nowhere as large as gravity, which no centrifuge takes away.
 
     Its nearest is a machine that stands still: nothing to reduce, and to tell a share of it
@@ -126,9 +126,7 @@ def require_makeable(profile: Profile) -> None:
     NotReleasedError
         If more of the requested G would be changed than the profile allows.
     """
-    if not isinstance(profile.command, GCommand):
-        return
-    size = np.linalg.norm(profile.command.sides, axis=-1)
+    size = np.linalg.norm(command.sides, axis=-1)
     gravity, most = profile.machine.gravity / STANDARD_GRAVITY_M_S2, float(np.max(size))
     if most >= gravity:
         return

@@ -15,9 +15,6 @@ from des_cli.model.solution import Solution, Status
 from des_cli.model.stage import OnStage, untold
 from des_cli.reduction.budget import pose_budget, spend_budgets
 from des_cli.reduction.change import Change
-from des_cli.reduction.executable import nearest_executable
-from des_cli.reduction.free.method import find_free_motion
-from des_cli.reduction.free.task import FreeTask
 from des_cli.reduction.limits import steps_too_short
 from des_cli.reduction.optimum import find_optimum
 from des_cli.reduction.problem import Problem, pose_problem
@@ -97,6 +94,10 @@ def find_motion(
         profile = replace(profile, reduction=replace(reduction, budget=left))
     if overspent or not free:
         return _of_factors(profile, record, held, overspent, report, on_stage)
+    # Methods are imported by who asks for them: start-up is paid by every run.
+    from des_cli.reduction.free.method import find_free_motion
+    from des_cli.reduction.free.task import FreeTask
+
     task = FreeTask.of(profile, held.motion, held.shortfall)
     if target is not requested:
         task = replace(task, record=record, most=reduction.budget_of_record)
@@ -151,6 +152,8 @@ def executable_motion(profile: Profile, target: Motion) -> tuple[Motion, str]:
         return target, ""
     if trouble := steps_too_short(profile.machine, target, MOST_ROUNDING):
         return target, f"{trouble}, or let the joints move freely"
+    from des_cli.reduction.executable import nearest_executable
+
     return nearest_executable(profile.machine, target)
 
 

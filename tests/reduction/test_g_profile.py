@@ -16,8 +16,7 @@ from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import BodyRates, GCommand, Profile, Reduction
 from des_cli.model.response import Response
 from des_cli.pipeline import reduce_profile
-from des_cli.reduction.desired import find_desired
-from des_cli.reduction.g_profile import require_makeable
+from des_cli.reduction.desired import find_desired, require_makeable
 from des_cli.reduction.limits import find_violations
 from tests.support.felt_reference import Table, by_parabolas, gauss_points
 
