@@ -1,23 +1,35 @@
-"""From a motion of the joints to everything it does at the seat."""
+"""From a motion of the joints to everything it does at the seat.
+
+Long motions are evaluated in blocks that stay in the processor's cache.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
 from des_cli.kinematics.chain import Chain, chain_of, joint_axes
 from des_cli.kinematics.coriolis import angular_acceleration_split, coriolis
 from des_cli.kinematics.seat import (
+    PILOT_SIGNS,
     in_seat_axes,
     linear_acceleration_parts,
     pilot_g,
     specific_force,
 )
+from des_cli.kinematics.twist import SeatForms, seat_forms
+from des_cli.model.arrays import Floats
 from des_cli.model.machine import Machine, Seat
 from des_cli.model.motion import DesiredMotion, Motion, Shortfall
-from des_cli.model.response import Response
+from des_cli.model.response import Response, SeatResponse
 from des_cli.units import STANDARD_GRAVITY_M_S2
+
+BLOCK = 2048
+"""Intervals that are evaluated at a time."""
+
+AnyResponse = TypeVar("AnyResponse", bound=SeatResponse)
 
 
 def respond(machine: Machine, seat: Seat, motion: Motion) -> Response:
@@ -36,11 +48,47 @@ def respond(machine: Machine, seat: Seat, motion: Motion) -> Response:
         ``seat_g`` is the G-vector in the pilot's signs, the other quantities
         are along plain axes; see ``kinematics.seat``.
     """
-    return respond_on(chain_of(machine, seat), machine.gravity, motion)
+    chain = chain_of(machine, seat)
+    felt = respond_on(chain, machine.gravity, motion)
+    return Response(
+        felt.coriolis_seat,
+        felt.seat_rate,
+        felt.seat_angular_acceleration,
+        felt.seat_g,
+        coriolis_report=coriolis(chain, motion.angle_sides, motion.rate_sides, "report"),
+    )
 
 
-def respond_on(chain: Chain, gravity: float, motion: Motion) -> Response:
-    """Evaluate the response of a chain under a gravity [m/s^2]; see `respond`."""
+def respond_on(chain: Chain, gravity: float, motion: Motion) -> SeatResponse:
+    """Evaluate what is felt on a chain under a gravity [m/s^2]; see `respond`."""
+    forms = seat_forms(chain, gravity)
+    if forms.vertical:
+        return _by_screws(forms, motion)
+    return _by_chain(chain, gravity, motion)
+
+
+def _by_screws(forms: SeatForms, motion: Motion) -> SeatResponse:
+    """Evaluate the seat's twist, for an arm that turns about the vertical."""
+    intervals, acceleration = len(motion.step), motion.acceleration
+    felt = [np.empty((intervals, 2, 3)) for _ in range(4)]
+    cross, spin, turning, g = felt
+    to_g = PILOT_SIGNS[:, None] / STANDARD_GRAVITY_M_S2
+    for first in range(0, intervals, BLOCK):
+        part = slice(first, first + BLOCK)
+        z = np.empty((8, len(acceleration[part])))
+        z[5:] = acceleration[part].T
+        sides = (motion.angle[:-1], motion.rate_start), (motion.angle[1:], motion.rate_end)
+        for side, (angle, rate) in enumerate(sides):
+            z[:2], z[2:5] = angle[part, 1:].T, rate[part].T
+            seat = forms.at(z)
+            cross[part, side] = seat.products[:3].T
+            spin[part, side] = seat.twist[:3].T
+            turning[part, side] = seat.twist_rate[:3].T
+            g[part, side] = (to_g * seat.force).T
+    return SeatResponse(*felt)
+
+
+def _by_chain(chain: Chain, gravity: float, motion: Motion) -> SeatResponse:
     angles, rates = motion.angle_sides, motion.rate_sides
     accelerations = np.broadcast_to(motion.acceleration[:, None, :], rates.shape)
     parts = linear_acceleration_parts(chain, angles, rates, accelerations)
@@ -49,14 +97,27 @@ def respond_on(chain: Chain, gravity: float, motion: Motion) -> Response:
     # dW/dt is the same vector whether W is taken along ground or along seat axes, for
     # the seat's own turning adds W x W = 0.
     noncoriolis, cross = angular_acceleration_split(chain, angles, rates, accelerations, "seat")
-    return Response(
-        coriolis_report=coriolis(chain, angles, rates, "report"),
-        coriolis_seat=cross,
-        seat_rate=spin[..., 0, :],
-        seat_angular_acceleration=noncoriolis + cross,
-        seat_parts=in_seat_axes(chain, angles, parts) / STANDARD_GRAVITY_M_S2,
-        seat_g=pilot_g(force),
-    )
+    return SeatResponse(cross, spin[..., 0, :], noncoriolis + cross, pilot_g(force))
+
+
+def acceleration_parts(chain: Chain, motion: Motion) -> Floats:
+    """Split the seat's linear acceleration at both ends of every interval.
+
+    Parameters
+    ----------
+    chain : Chain
+    motion : Motion
+
+    Returns
+    -------
+    (n - 1, 2, 3, 3) array
+        Tangential, centripetal and Coriolis part (third axis), gravity left out, along
+        x, y, z of the seat [g].
+    """
+    angles, rates = motion.angle_sides, motion.rate_sides
+    accelerations = np.broadcast_to(motion.acceleration[:, None, :], rates.shape)
+    parts = linear_acceleration_parts(chain, angles, rates, accelerations)
+    return in_seat_axes(chain, angles, parts) / STANDARD_GRAVITY_M_S2
 
 
 def respond_as_requested(machine: Machine, seat: Seat, requested: DesiredMotion) -> Response:
@@ -76,7 +137,7 @@ def respond_as_requested(machine: Machine, seat: Seat, requested: DesiredMotion)
     return with_shortfall(respond(machine, seat, requested.motion), requested.shortfall)
 
 
-def with_shortfall(response: Response, shortfall: Shortfall | None) -> Response:
+def with_shortfall(response: AnyResponse, shortfall: Shortfall | None) -> AnyResponse:
     """Return a response of a joint motion with the shortfall added."""
     if shortfall is None:
         return response

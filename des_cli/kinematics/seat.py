@@ -20,7 +20,7 @@ Conventions, in words:
   forward) eyeballs in, +Gy (pushed to the right) eyeballs left, +Gz (pushed
   headward) eyeballs down. So (Gx, Gy, Gz) = (fx, fy, -fz), and rest is Gz = +1.
   ``Response.seat_g`` is this vector.
-- ``Response.seat_parts`` holds accelerations without gravity along the plain
+- ``acceleration_parts`` gives accelerations without gravity along the plain
   seat axes x, y, z.
 
 The study's examples of Coriolis, on a planar machine: two turntables about one

@@ -27,7 +27,7 @@ from des_cli.model.metric import (
     MetricKey,
 )
 from des_cli.model.motion import Motion, Shortfall, integrate_sides
-from des_cli.model.response import Response
+from des_cli.model.response import SeatResponse
 
 
 class Deviation:
@@ -37,7 +37,7 @@ class Deviation:
     ----------
     reference, modified : Motion
         On the same samples.
-    before, after : Response
+    before, after : SeatResponse
         Of the two.
     chains : tuple of Chain
         Of the two: the seat may be fixed otherwise in the modified one.
@@ -51,8 +51,8 @@ class Deviation:
         self,
         reference: Motion,
         modified: Motion,
-        before: Response,
-        after: Response,
+        before: SeatResponse,
+        after: SeatResponse,
         chains: tuple[Chain, Chain],
         control: Floats | None = None,
         shortfall: Shortfall | None = None,

@@ -15,7 +15,7 @@ from des_cli.kinematics.onset import onsets
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, Machine, Seat
 from des_cli.model.motion import Motion
-from des_cli.model.response import Response
+from des_cli.model.response import SeatResponse
 from des_cli.model.run import SeatQuantity, Violation
 
 TOLERANCE = 1e-9
@@ -202,7 +202,7 @@ def steps_too_short(machine: Machine, motion: Motion, share: float) -> str:
 
 
 def find_occupant_violations(
-    machine: Machine, seat: Seat, response: Response, motion: Motion, which: Which
+    machine: Machine, seat: Seat, response: SeatResponse, motion: Motion, which: Which
 ) -> tuple[Violation, ...]:
     """Name every bound on what the occupant may get that a motion breaks.
 
@@ -211,7 +211,7 @@ def find_occupant_violations(
     machine : Machine
         Its ``occupant`` has the bounds.
     seat : Seat
-    response : Response
+    response : SeatResponse
         Of the motion.
     motion : Motion
     which : {"desired", "modified"}
@@ -246,7 +246,7 @@ def angular_acceleration_magnitude(machine: Machine, seat: Seat, motion: Motion)
 
 
 def _g_violations(
-    machine: Machine, response: Response, motion: Motion, which: Which
+    machine: Machine, response: SeatResponse, motion: Motion, which: Which
 ) -> Iterator[Violation]:
     """Yield what breaks a bound on the G-vector or on its onset."""
     bounds = machine.occupant

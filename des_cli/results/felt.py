@@ -19,21 +19,21 @@ from des_cli.model.felt import (
     TurningSizes,
 )
 from des_cli.model.motion import Motion, integrate_sides
-from des_cli.model.response import Response
+from des_cli.model.response import SeatResponse
 
 WEIGHTLESS = 0.1
 """Size of the G-vector [g] below which it has no direction worth an angle: there the
 pilot has no down that could tilt, and a small error would turn it right round."""
 
 
-def felt_metrics(motion: Motion, before: Response, after: Response) -> Felt:
+def felt_metrics(motion: Motion, before: SeatResponse, after: SeatResponse) -> Felt:
     """Return sizes of the seat's rate, of its angular acceleration and of the G-vector.
 
     Parameters
     ----------
     motion : Motion
         Gives the sample times.
-    before, after : Response
+    before, after : SeatResponse
     """
     rates = _sizes(motion.step, before.seat_rate, after.seat_rate)
     turning = _sizes(motion.step, before.seat_angular_acceleration, after.seat_angular_acceleration)

@@ -15,6 +15,8 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 
 from des_cli.errors import Complaint, NotReleasedError
+from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.response import acceleration_parts
 from des_cli.model.arrays import Floats
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.machine import JOINTS
@@ -27,7 +29,7 @@ TableFormat: TypeAlias = Literal["csv", "ndjson", "json", "parquet"]
 TABLE_FORMATS: tuple[TableFormat, ...] = get_args(TableFormat)
 
 SEAT_PARTS = ("tangential", "centripetal", "coriolis")
-"""Names of ``Response.seat_parts`` along its third axis."""
+"""Of the seat's linear acceleration; see ``kinematics.response.acceleration_parts``."""
 
 # Rows turned into text at a time: keeps the Python floats of a long table from
 # being alive all at once.
@@ -78,6 +80,14 @@ def trajectory_columns(run: Run) -> dict[str, Floats]:
         lists the columns.
     """
     before, after = run.before, run.after
+    machine = run.profile.machine
+    parts = [
+        acceleration_parts(chain_of(machine, seat), motion)
+        for seat, motion in (
+            (run.profile.seat, run.asked.motion),
+            (run.seat, run.solution.modified),
+        )
+    ]
     blocks = [
         run.solution.modified.t[:, None],
         *_motion_blocks(run.desired),
@@ -90,7 +100,7 @@ def trajectory_columns(run: Run) -> dict[str, Floats]:
         _interleaved(before.seat_rate, after.seat_rate),
         _interleaved(before.seat_angular_acceleration, after.seat_angular_acceleration),
         *(
-            _interleaved(before.seat_parts[:, :, part], after.seat_parts[:, :, part])
+            _interleaved(*(of_motion[:, :, part] for of_motion in parts))
             for part in range(len(SEAT_PARTS))
         ),
         *_motion_blocks(run.asked.motion),

@@ -1,12 +1,23 @@
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
 
-from des_cli.kinematics.chain import seat_rotation
+import numpy as np
+import pytest
+
+from des_cli.kinematics.chain import chain_of, seat_rotation
 from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.kinematics.coriolis import coriolis
-from des_cli.kinematics.response import respond
+from des_cli.kinematics.response import (
+    BLOCK,
+    _by_chain,
+    _by_screws,
+    acceleration_parts,
+    respond,
+    respond_on,
+)
 from des_cli.kinematics.seat import pilot_g
+from des_cli.kinematics.twist import seat_forms
 from des_cli.model.machine import Machine, Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion, integrate_sides
@@ -29,7 +40,7 @@ def test_reference_states(state, same):
     same(response.seat_rate[0, 0], state["W_body"])
     parts = state["a_body_g_no_gravity"]
     same(
-        response.seat_parts[0, 0],
+        acceleration_parts(chain_of(DES, state.seat), motion)[0, 0],
         [parts[name] for name in ("tangential", "centripetal", "coriolis")],
     )
     same(response.seat_g[0, 0], pilot_g(state["specific_force_body_g_with_gravity"]))
@@ -39,8 +50,8 @@ def test_both_sides_agree_where_nothing_steps(case, rng):
     motion = smooth_motion(*rng.uniform(-1.0, 1.0, (3, 3)), np.array([0.0, 0.2, 0.5, 0.6]))
     response = respond(case.machine, case.seat, motion)
     names = ("coriolis_report", "coriolis_seat", "seat_rate", "seat_angular_acceleration")
-    for name in (*names, "seat_parts", "seat_g"):
-        sides = getattr(response, name)
+    named = {name: getattr(response, name) for name in (*names, "seat_g")}
+    for name, sides in (named | {"parts": acceleration_parts(case.chain, motion)}).items():
         assert sides.shape[:2] == (3, 2)
         np.testing.assert_allclose(sides[:-1, 1], sides[1:, 0], rtol=0, atol=1e-12, err_msg=name)
     inertial = np.linalg.norm(response.coriolis_report, axis=-1)
@@ -58,7 +69,34 @@ def test_a_rate_step_stays_a_step(case):
     assert np.abs(after - before).max() > 0.01
     np.testing.assert_allclose(response.coriolis_seat[0, 1], before, rtol=0, atol=1e-14)
     np.testing.assert_allclose(response.coriolis_seat[1, 0], after, rtol=0, atol=1e-14)
-    assert not response.seat_parts[..., 0, :].any()  # no acceleration is invented at the step
+    assert not acceleration_parts(case.chain, motion)[
+        ..., 0, :
+    ].any()  # no acceleration is invented at the step
+
+
+def test_screws_and_chain_agree_in_every_block(case, rng):
+    """Two derivations of what is felt: the twist of screw axes, and partials of the pose."""
+    n = BLOCK + 3
+    motion = smooth_motion(*rng.uniform(-1.0, 1.0, (3, 3)), np.cumsum(rng.uniform(1e-4, 1e-3, n)))
+    gravity = case.machine.gravity
+    forms = seat_forms(case.chain, gravity)
+    one, other = _by_screws(forms, motion), _by_chain(case.chain, gravity, motion)
+    for name, values in vars(other).items():
+        if name == "seat_g" and not forms.vertical:
+            continue
+        np.testing.assert_allclose(getattr(one, name), values, rtol=0, atol=1e-12, err_msg=name)
+    expected = one if forms.vertical else other
+    np.testing.assert_array_equal(respond_on(case.chain, gravity, motion).seat_g, expected.seat_g)
+
+
+def test_an_arm_that_is_not_vertical_takes_the_seat_through_gravity():
+    rows = (replace(DES.rows[0], alpha=0.3), *DES.rows[1:])
+    tilted = Machine("tilted", rows, DES.limits)
+    turn = np.array([[0.0, 0.0, 0.0], [np.pi, 0.0, 0.0]])
+    creep = Motion(np.array([0.0, 1e9]), turn, np.zeros((1, 3)), np.zeros((1, 3)))
+    g = respond(tilted, Seat(), creep).seat_g[0]
+    np.testing.assert_allclose(np.linalg.norm(g, axis=-1), 1.0, rtol=1e-12)
+    assert np.linalg.norm(g[1] - g[0]) == pytest.approx(2.0 * np.sin(0.3), rel=1e-12)
 
 
 def test_seat_quantities_do_not_depend_on_the_azimuth(rng):
@@ -68,7 +106,9 @@ def test_seat_quantities_do_not_depend_on_the_azimuth(rng):
     )
     seat = Seat(0.8, 0.3)
     here, there = respond(DES, seat, motion), respond(DES, seat, turned)
-    names = ("coriolis_seat", "seat_rate", "seat_angular_acceleration", "seat_parts", "seat_g")
+    one, other = (acceleration_parts(chain_of(DES, seat), each) for each in (motion, turned))
+    np.testing.assert_allclose(other, one, rtol=0, atol=1e-13)
+    names = ("coriolis_seat", "seat_rate", "seat_angular_acceleration", "seat_g")
     for name in names:
         np.testing.assert_allclose(getattr(there, name), getattr(here, name), rtol=0, atol=1e-13)
     assert np.abs(there.coriolis_report - here.coriolis_report).max() > 0.01

@@ -18,7 +18,7 @@ STEP = np.array([1.0, 3.0])
 
 def response(report: Floats, seat: Floats) -> Response:
     none = np.zeros((2, 2, 3))
-    return Response(report, seat, none, none, np.zeros((2, 2, 3, 3)), none)
+    return Response(seat, none, none, none, report)
 
 
 def along(axis: int, *sides: float) -> Floats:

@@ -15,6 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from des_cli.errors import NotReleasedError
+from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.response import acceleration_parts
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import mean_of_sides
 from des_cli.model.run import Run
@@ -200,7 +202,12 @@ def test_trajectory_columns_hold_what_their_names_say(synthetic_run: MakeRun) ->
         np.testing.assert_allclose(jerk[1:-1], np.where(steps, 0.0, change / 0.1), rtol=1e-9)
         assert steps.any() == (joint == "cab")
         assert (jerk[0], jerk[-1]) == (jerk[1], jerk[-2])
-    for when, response in (("before", run.before), ("after", run.after)):
+    chain = chain_of(run.profile.machine, run.profile.seat)
+    for when, response, motion in (
+        ("before", run.before, run.asked.motion),
+        ("after", run.after, modified),
+    ):
+        parts = acceleration_parts(chain, motion)
         for i, axis in enumerate("pqr"):
             rate = mean_of_sides(response.seat_rate)[:, i]
             np.testing.assert_array_equal(columns[f"seat_{axis}_{when}_rad_s"], rate)
@@ -217,7 +224,7 @@ def test_trajectory_columns_hold_what_their_names_say(synthetic_run: MakeRun) ->
             felt = mean_of_sides(response.seat_g)[:, i]
             np.testing.assert_array_equal(columns[f"seat_g{axis}_{when}_g"], felt)
             for k, part in enumerate(("tangential", "centripetal", "coriolis")):
-                share = mean_of_sides(response.seat_parts)[:, k, i]
+                share = mean_of_sides(parts)[:, k, i]
                 np.testing.assert_array_equal(columns[f"seat_{part}_{axis}_{when}_g"], share)
 
 

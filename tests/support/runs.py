@@ -9,6 +9,7 @@ import numpy as np
 
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine, Seat
+from des_cli.model.machines import DES
 from des_cli.model.motion import DesiredMotion, Motion
 from des_cli.model.profile import Control, JointCommands, Profile, Reduction
 from des_cli.model.response import Response
@@ -61,7 +62,7 @@ def make_run(
             name=name,
             t=t,
             command=commands,
-            machine=Machine("des", (), LIMITS),
+            machine=Machine("des", DES.rows, LIMITS),
             reduction=Reduction(
                 control=control,
                 axes="report",
@@ -132,11 +133,11 @@ def _response(motion: Motion) -> Response:
     cb3 = -c2 * r2 * r3
     seat = np.stack([c1 * ab3 - s1 * bb3, s1 * ab3 + c1 * bb3, cb3], axis=-1)
     rate = motion.rate_sides
-    parts = np.stack([0.1 * rate, 0.6 * rate**2, 0.05 * seat], axis=-2)
     gravity = np.stack([s2, np.zeros_like(s2), -c2], axis=-1)
     report = np.stack([ab3, bb3, cb3], axis=-1)
     total = 0.3 * motion.acceleration[:, None, :] + seat
-    return Response(report, seat, rate, total, parts, parts.sum(axis=-2) + gravity)
+    g = 0.1 * rate + 0.6 * rate**2 + 0.05 * seat + gravity
+    return Response(seat, rate, total, g, report)
 
 
 def _component(before: Floats, after: Floats) -> dict[str, float]:

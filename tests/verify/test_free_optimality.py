@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.response import respond_on
+from des_cli.kinematics.response import respond
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
 from des_cli.model.motion import integrate_sides
@@ -58,7 +57,7 @@ def test_a_weight_in_the_studys_axes_is_on_these(case):
     r1 = np.diag([0.0, 2.0, 0.0])
     costs = []
     for name in ("coriolis_report", "coriolis_seat"):
-        c = getattr(respond_on(chain_of(DES, case.seat), DES.gravity, case.solution.modified), name)
+        c = getattr(respond(DES, case.seat, case.solution.modified), name)
         costs.append(float(integrate_sides(case.requested.step, c[..., 1] ** 2)))
     for axes, right, wrong in (("report", *costs), ("seat", *reversed(costs))):
         assert "cost" not in case.failed(replace(case.solution, cost=right), r1=r1, axes=axes)

@@ -24,7 +24,7 @@ from des_cli.kinematics.seat import PILOT_SIGNS
 from des_cli.kinematics.twist import SeatMotion
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import Motion, Shortfall
-from des_cli.model.response import Response
+from des_cli.model.response import SeatResponse
 from des_cli.reduction.free.terms import Quantity, value_of
 from des_cli.reduction.free.windows import Windows
 from des_cli.reduction.reference import sample_sides
@@ -83,12 +83,12 @@ class Requested:
         return cls(values, square, dict.fromkeys(QUANTITIES, 0.0))
 
     @classmethod
-    def projected(cls, response: Response, t: Floats, windows: Windows) -> Requested:
+    def projected(cls, response: SeatResponse, t: Floats, windows: Windows) -> Requested:
         """Project a record's samples.
 
         Parameters
         ----------
-        response : Response
+        response : SeatResponse
             As asked for, at both ends of every interval of the record.
         t : (n,) array
             The record's times [s].
@@ -123,12 +123,12 @@ class Requested:
         return cls(values, square, floor)
 
 
-def is_rough(response: Response, t: Floats, step: float) -> bool:
+def is_rough(response: SeatResponse, t: Floats, step: float) -> bool:
     """Whether the rate or the G of a record jumps from sample to sample, faster than knots.
 
     Parameters
     ----------
-    response : Response
+    response : SeatResponse
         As asked for, at both ends of every interval of the record.
     t : (n,) array
         The record's times [s].
@@ -152,7 +152,7 @@ def _missing(shortfall: Shortfall) -> dict[Quantity, Floats]:
     }
 
 
-def _sides(response: Response) -> dict[Quantity, Floats]:
+def _sides(response: SeatResponse) -> dict[Quantity, Floats]:
     """Return a response by the quantities of terms, in their order."""
     return {
         "rate": response.seat_rate,

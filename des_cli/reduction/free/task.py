@@ -17,7 +17,7 @@ from des_cli.model.metric import (
 from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Ends as EndsName
 from des_cli.model.profile import Profile, Reduction
-from des_cli.model.response import Response
+from des_cli.model.response import SeatResponse
 from des_cli.reduction.free.requested import is_rough
 from des_cli.reduction.limits import find_violations
 from des_cli.solver.spline import Ends, SplineGrid
@@ -48,7 +48,7 @@ class FreeTask:
         Share of each bound on what the occupant gets that is left to the table.
     shortfall : Shortfall, optional
         What is asked for beyond the reference.
-    response : Response, optional
+    response : SeatResponse, optional
         As asked for, where it is known already.
     record : Record, optional
         What conditioning began from, where the reference is another motion.
@@ -65,7 +65,7 @@ class FreeTask:
     limits: tuple[JointLimits, ...]
     room: float = 0.0
     shortfall: Shortfall | None = None
-    response: Response | None = None
+    response: SeatResponse | None = None
     record: Record | None = None
     most: tuple[Budget, ...] = ()
     round_base: bool = False
@@ -89,7 +89,7 @@ class FreeTask:
             shortfall=shortfall,
         ).with_response()
 
-    def requested(self) -> Response:
+    def requested(self) -> SeatResponse:
         """Return what is asked of the seat, at both ends of every interval."""
         if self.response is not None:
             return self.response

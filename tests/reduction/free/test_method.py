@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.response import respond_on
+from des_cli.kinematics.response import respond, respond_on
 from des_cli.model.machine import DHRow, OccupantBounds, Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
@@ -297,10 +297,7 @@ def test_another_maneuver_further_away_in_time_and_azimuth_has_the_same_answer()
 def test_one_component_may_be_weighed(axes):
     r1 = np.diag([0.0, 2.0, 0.0])
     result = solved(task_of(DESIRED, FELT, axes=axes, r1=r1))
-    before, after = (
-        respond_on(chain_of(DES, Seat()), DES.gravity, motion)
-        for motion in (DESIRED, result.solution.modified)
-    )
+    before, after = (respond(DES, Seat(), motion) for motion in (DESIRED, result.solution.modified))
     name = "coriolis_report" if axes == "report" else "coriolis_seat"
     one, other = (
         np.sum(0.5 * DESIRED.step[:, None] * getattr(felt, name)[..., 1] ** 2)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from des_cli.kinematics.chain import chain_of
+from des_cli.kinematics.coriolis import coriolis
 from des_cli.kinematics.response import respond_on
 from des_cli.model.machine import OccupantBounds
 from des_cli.model.machines import DES
@@ -101,8 +102,7 @@ def test_the_cost_is_what_is_left_of_the_cross_coupling(axes, r1):
     x = sway(program)
     energies = []
     for motion in (DESIRED, moved(task, program, x)):
-        felt = respond_on(task.chain, DES.gravity, motion)
-        c = felt.coriolis_report if axes == "report" else felt.coriolis_seat
+        c = coriolis(task.chain, motion.angle_sides, motion.rate_sides, axes)
         running = np.einsum("kxi,ij,kxj->kx", c, r1, c)
         energies.append(np.sum(0.5 * motion.step[:, None] * running))
     assert cross_coupling(task, program.problem.grid) == pytest.approx(energies[0], rel=1e-4)
