@@ -15,6 +15,7 @@ import numpy as np
 from des_cli.errors import Complaint, NotReleasedError
 from des_cli.model.arrays import Floats
 from des_cli.model.command_table import CommandTable
+from des_cli.runs_out.tables import LONG_TABLE
 from des_cli.units import split_unit
 
 COLUMNS = ("t_s", "arm_rpm", "fork_deg", "cab_deg")
@@ -23,6 +24,10 @@ COLUMNS = ("t_s", "arm_rpm", "fork_deg", "cab_deg")
 _NUMBER = rb"-?[0-9]+(?:\.[0-9]+)?(?:e[+-][0-9]+)?"
 _ROW = re.compile(rb"%b(?:,%b){%d}" % (_NUMBER, _NUMBER, len(COLUMNS) - 1))
 _PARQUET = b"PAR1"
+
+_SIGNS = b"0123456789.e+-,\n"
+_UNFINISHED = (b".,", b".\n", b".e", b",.", b"\n.", b"-.")
+"""What Arrow takes for a number and `_NUMBER` does not: one that begins or ends with the point."""
 
 
 def parse_command_table(data: bytes, label: str) -> CommandTable:
@@ -70,17 +75,25 @@ def _columns(data: bytes) -> Floats:
     return columns
 
 
-def _lines(data: bytes) -> list[bytes]:
-    """Return the lines; the last one must end."""
+def _require_end(data: bytes) -> None:
     if not data.endswith(b"\n"):
         raise _UnlikeError("its last line does not end: it was cut")
+
+
+def _lines(data: bytes) -> list[bytes]:
+    """Return the lines; the last one must end."""
+    _require_end(data)
     return data[:-1].split(b"\n")
 
 
 def _csv(data: bytes) -> Floats:
-    header, *rows = _lines(data)
-    if header != ",".join(COLUMNS).encode():
+    _require_end(data)
+    header = ",".join(COLUMNS).encode()
+    if not data.startswith(header + b"\n"):
         raise _UnlikeError(f"its first line is not {','.join(COLUMNS)}")
+    if data.count(b"\n") > LONG_TABLE and (columns := _long_csv(data[len(header) :])) is not None:
+        return columns
+    _, *rows = _lines(data)
     for number, row in enumerate(rows, start=1):
         if not _ROW.fullmatch(row):
             raise _UnlikeError(f"row {number} is not {len(COLUMNS)} plain numbers between commas")
@@ -88,6 +101,36 @@ def _csv(data: bytes) -> Floats:
         return np.empty((0, len(COLUMNS)))
     numbers = [float(text) for text in b",".join(rows).split(b",")]
     return np.array(numbers).reshape(-1, len(COLUMNS))
+
+
+def _long_csv(rows: bytes) -> Floats | None:
+    """Read the rows by Arrow, or return None where one is not spelled as it would be written.
+
+    Parameters
+    ----------
+    rows : bytes
+        With the end of the header's line.
+    """
+    # Imported here: it costs a tenth of a second that a short table does not need.
+    import pyarrow as pa
+    import pyarrow.csv as pc
+
+    plus = rows.count(b"e+")
+    signed = plus + rows.count(b"e-") == rows.count(b"e") and plus == rows.count(b"+")
+    if rows.translate(None, _SIGNS) or not signed or any(odd in rows for odd in _UNFINISHED):
+        return None
+    try:
+        table = pc.read_csv(
+            pa.BufferReader(memoryview(rows)[1:]),
+            read_options=pc.ReadOptions(use_threads=False, column_names=COLUMNS),
+            parse_options=pc.ParseOptions(quote_char=False, ignore_empty_lines=False),
+            convert_options=pc.ConvertOptions(
+                column_types=dict.fromkeys(COLUMNS, pa.float64()), null_values=[]
+            ),
+        )
+    except (pa.ArrowException, ValueError):
+        return None
+    return np.column_stack([column.to_numpy() for column in table.columns])
 
 
 def _json(data: bytes) -> Floats:

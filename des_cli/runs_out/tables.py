@@ -2,8 +2,8 @@
 
 A table is a mapping from a column's name, which ends with its unit, to a
 one-dimensional array of doubles. Every format reads back the same doubles, bit
-for bit: the text formats write the shortest decimal that does. The text formats
-need neither pandas nor pyarrow.
+for bit: the text formats write the shortest decimal that does. They need neither pandas
+nor, but for a long CSV, pyarrow.
 """
 
 from __future__ import annotations
@@ -30,6 +30,9 @@ TABLE_FORMATS: tuple[TableFormat, ...] = get_args(TableFormat)
 
 SEAT_PARTS = ("tangential", "centripetal", "coriolis")
 """Of the seat's linear acceleration; see ``kinematics.response.acceleration_parts``."""
+
+LONG_TABLE = 50_000
+"""Rows from which on a CSV goes through Arrow, which is as long to import as it then saves."""
 
 # Rows turned into text at a time: keeps the Python floats of a long table from
 # being alive all at once.
@@ -226,6 +229,8 @@ def _text_columns(columns: Mapping[str, Floats]) -> Iterator[Sequence[list[str]]
 
 
 def _csv(columns: Mapping[str, Floats]) -> bytes:
+    if len(next(iter(columns.values()))) >= LONG_TABLE:
+        return _long_csv(columns)
     blocks = [",".join(columns).encode() + b"\n"]
     for texts in _text_columns(columns):
         rows = "\n".join(map(",".join, zip(*texts, strict=True)))
@@ -241,10 +246,19 @@ def _objects(columns: Mapping[str, Floats]) -> Iterator[str]:
         yield from (template % row for row in zip(*texts, strict=True))
 
 
-def _parquet(columns: Mapping[str, Floats]) -> bytes:
-    # Imported here: it costs a tenth of a second that a CSV table does not need.
+def _long_csv(columns: Mapping[str, Floats]) -> bytes:
+    """Return the same by Arrow, which writes whole numbers without their ``.0``."""
     import pyarrow as pa
-    import pyarrow.parquet as pq
+    import pyarrow.csv as pc
+
+    sink = pa.BufferOutputStream()
+    sink.write(",".join(columns).encode() + b"\n")
+    pc.write_csv(_arrow_table(columns), sink, pc.WriteOptions(include_header=False))
+    return bytes(sink.getvalue())
+
+
+def _arrow_table(columns: Mapping[str, Floats]) -> Any:
+    import pyarrow as pa
 
     # From buffers, because pa.array would import pandas to ask whether it was given any.
     arrays: list[Any] = [
@@ -255,7 +269,15 @@ def _parquet(columns: Mapping[str, Floats]) -> bytes:
         )
         for values in columns.values()
     ]
-    table = pa.Table.from_arrays(arrays, names=list(columns))
+    return pa.Table.from_arrays(arrays, names=list(columns))
+
+
+def _parquet(columns: Mapping[str, Floats]) -> bytes:
+    # Imported here: it costs a tenth of a second that a CSV table does not need.
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    table = _arrow_table(columns)
     sink = pa.BufferOutputStream()
     # Snappy is what every reader knows; a dictionary of doubles that never
     # repeat only adds bytes.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import random
 
 import numpy as np
 import pytest
@@ -11,9 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from des_cli.errors import ProfileError
+from des_cli.profiles_in import csv_table
 from des_cli.profiles_in.csv_header import split_header
 from des_cli.profiles_in.csv_table import _LEFT_OUT as LEFT_OUT
 from des_cli.profiles_in.csv_table import Rows, column_text, read_columns
+from tests.support.hostile import NO_CELLS
 
 JOINTS = "t_s,arm_rpm,fork_deg,cab_deg\n"
 
@@ -173,3 +176,49 @@ def test_too_many_rows_are_refused_by_both_readers_before_they_are_read() -> Non
         header = split_header(JOINTS + body, "x.csv")
         with pytest.raises(ProfileError, match=r"x\.csv: has more than 2 rows; --max-rows"):
             read_columns(header, [0, 1], most_rows=2)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_arrow_reads_what_the_careful_reader_reads_or_nothing(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Cells of every spelling, quotes, blank and commented lines, in columns read and unread."""
+    draw = random.Random(seed)
+    good = ("1", "-2.5", "1e3", "1E-3", ".5", "5.", "007", "0.1234567890123456789", '"3.25"', " 4 ")
+    odd = (
+        *NO_CELLS,
+        "+1",
+        "#1",
+        "2026-01-01",
+        '"a,b"',
+        '"1',
+        '1"',
+        '""',
+        "\t1",
+        "1\t",
+        "\v1",
+        "-0",
+    )
+    monkeypatch.setattr(csv_table, "LONG", 0)
+    agreed = 0
+    for _ in range(2000):
+        rows = [[draw.choice(good) for _ in range(4)] for _ in range(draw.randint(1, 5))]
+        for _ in range(draw.choice((0, 0, 1, 2))):
+            draw.choice(rows)[draw.randrange(4)] = draw.choice(odd)
+        lines = [",".join(row) for row in rows]
+        if draw.random() < 0.1:
+            added = draw.choice(("", " ", "#", "#1,2,3,4", ",,,"))
+            lines.insert(draw.randrange(len(lines) + 1), added)
+        if draw.random() < 0.1:
+            lines[-1] += draw.choice((",", ",1", "\r", "\n\n"))
+        header = split_header("t_s,a,b,c\n" + "\n".join(lines) + "\n", "log.csv")
+        places = draw.sample(range(4), draw.randint(1, 4))
+        fast = csv_table._read_fast(header, places)
+        if fast is None:
+            continue
+        slow = csv_table._read_slowly(header, places, [False] * len(places), None, 100)
+        np.testing.assert_array_equal(fast.values, slow.values)
+        assert list(fast.lines) == list(slow.lines)
+        assert slow.comments == 0
+        agreed += 1
+    assert agreed > 500

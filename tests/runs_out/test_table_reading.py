@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 
 import numpy as np
@@ -10,8 +11,15 @@ import pytest
 
 from des_cli.errors import NotReleasedError
 from des_cli.model.run import Run
+from des_cli.runs_out import table_reading, tables
 from des_cli.runs_out.table_reading import COLUMNS, parse_command_table
-from des_cli.runs_out.tables import TABLE_FORMATS, TableFormat, command_columns, encode_table
+from des_cli.runs_out.tables import (
+    LONG_TABLE,
+    TABLE_FORMATS,
+    TableFormat,
+    command_columns,
+    encode_table,
+)
 
 HEADER = "t_s,arm_rpm,fork_deg,cab_deg\n"
 GOOD = HEADER + "0.0,30.0,180.0,-90.0\n0.5,60.0,1e-05,0.0\n"
@@ -72,10 +80,51 @@ def test_numbers_by_hand() -> None:
         ("PAR1 and no more", "it is not Parquet"),
     ],
 )
-def test_what_is_spelled_otherwise_is_refused(text: str, why: str) -> None:
-    with pytest.raises(NotReleasedError) as caught:
-        parse_command_table(text.encode(), "x.csv")
-    assert str(caught.value).startswith(f"x.csv: is no command table: {why}")
+def test_what_is_spelled_otherwise_is_refused(
+    text: str, why: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for long in (LONG_TABLE, 0):
+        monkeypatch.setattr(table_reading, "LONG_TABLE", long)
+        with pytest.raises(NotReleasedError) as caught:
+            parse_command_table(text.encode(), "x.csv")
+        assert str(caught.value).startswith(f"x.csv: is no command table: {why}")
+
+
+@pytest.mark.parametrize(
+    "number",
+    ["1.", ".5", "-.5", "1.e+5", "1e5", "1e+.5", "--1", "1-2", "007", "-0", "1e+5", "2e-7"],
+)
+@pytest.mark.parametrize("column", [0, 1, 3])
+def test_a_long_table_has_the_grammar_of_a_short_one(
+    number: str, column: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = [["5.0", "1.0", "2.0", "3.0"], ["6.0", "1.0", "2.0", "3.0"]]
+    rows[0][column] = number
+    data = (HEADER + "".join(",".join(row) + "\n" for row in rows)).encode()
+    outcomes = []
+    for long in (LONG_TABLE, 0):
+        monkeypatch.setattr(table_reading, "LONG_TABLE", long)
+        try:
+            outcomes.append(parse_command_table(data, "x").values.tolist())
+        except NotReleasedError as error:
+            outcomes.append(str(error))
+    assert outcomes[0] == outcomes[1]
+    assert isinstance(outcomes[0], list) == bool(re.fullmatch(r"-?\d+(e[+-]\d+)?", number))
+
+
+def test_a_long_table_is_written_and_read_by_arrow(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(3)
+    size = 10.0 ** rng.uniform(-320, 300, (4, 2000))
+    columns = dict(zip(COLUMNS, rng.choice([-1.0, 1.0], size.shape) * size, strict=True))
+    columns["t_s"] = np.arange(2000.0)
+    short = parse_command_table(encode_table(columns, "csv"), "x")
+    monkeypatch.setattr(tables, "LONG_TABLE", 0)
+    monkeypatch.setattr(table_reading, "LONG_TABLE", 0)
+    data = encode_table(columns, "csv")
+    assert data.startswith(HEADER.encode() + b"0,")
+    np.testing.assert_array_equal(parse_command_table(data, "x").values, short.values)
+    monkeypatch.setattr(table_reading, "LONG_TABLE", LONG_TABLE)
+    np.testing.assert_array_equal(parse_command_table(data, "x").values, short.values)
 
 
 def test_parquet_of_other_columns_or_kinds_is_refused(synthetic_run: Callable[..., Run]) -> None:
