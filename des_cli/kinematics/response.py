@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from typing import TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -60,11 +61,21 @@ def respond(machine: Machine, seat: Seat, motion: Motion) -> Response:
 
 
 def respond_on(chain: Chain, gravity: float, motion: Motion) -> SeatResponse:
-    """Evaluate what is felt on a chain under a gravity [m/s^2]; see `respond`."""
-    forms = seat_forms(chain, gravity)
-    if forms.vertical:
-        return _by_screws(forms, motion)
-    return _by_chain(chain, gravity, motion)
+    """Evaluate what is felt on a chain under a gravity [m/s^2]; see `respond`.
+
+    Asked again for the same motion, as long as that is there, this returns the same object.
+    """
+    made = _made.setdefault(motion, {})
+    if (chain, gravity) not in made:
+        forms = seat_forms(chain, gravity)
+        made[chain, gravity] = (
+            _by_screws(forms, motion) if forms.vertical else _by_chain(chain, gravity, motion)
+        )
+    return made[chain, gravity]
+
+
+_made: WeakKeyDictionary[Motion, dict[tuple[Chain, float], SeatResponse]] = WeakKeyDictionary()
+"""The desired motion is compared with many, and is not to be evaluated anew for each."""
 
 
 def _by_screws(forms: SeatForms, motion: Motion) -> SeatResponse:

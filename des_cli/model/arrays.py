@@ -44,3 +44,13 @@ def read_only(values: ArrayLike, shape: tuple[int | None, ...]) -> Floats:
 def freeze(record: Any, name: str, shape: tuple[int | None, ...]) -> None:
     """Replace an array field of a frozen dataclass by its read-only copy."""
     object.__setattr__(record, name, read_only(getattr(record, name), shape))
+
+
+def inner(one: Floats, other: Floats) -> Floats:
+    """Return the inner product along the last axis; on a short one this is what numpy does fast."""
+    return np.asarray(np.einsum("...i,...i->...", one, other))
+
+
+def length(vectors: Floats) -> Floats:
+    """Return the Euclidean length along the last axis."""
+    return np.asarray(np.sqrt(inner(vectors, vectors)))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from des_cli.model.profile import BodyRates
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Motion:
     """Joint angles at samples, and joint rates at both ends of every interval.
 

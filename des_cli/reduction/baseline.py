@@ -12,6 +12,7 @@ import numpy as np
 
 from des_cli.kinematics.chain import Chain
 from des_cli.kinematics.coriolis import coriolis
+from des_cli.model.arrays import inner
 from des_cli.model.motion import Motion, integrate_sides
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.study_law import RUNAWAY
@@ -99,14 +100,15 @@ def _sweep_once(problem: Problem) -> Motion | None:
 def weighted_energy(problem: Problem, motion: Motion) -> float:
     """Return int c' R1 c dt of a motion."""
     c = coriolis(problem.chain, motion.angle_sides, motion.rate_sides, problem.axes)
-    return float(integrate_sides(motion.step, np.sum((c @ problem.r1) * c, axis=-1)))
+    return float(integrate_sides(motion.step, inner(c @ problem.r1, c)))
 
 
 def joint_deviation(reference: Motion, motion: Motion) -> float:
     """Return ||theta - Theta|| / ||Theta|| over the joint angles."""
-    off = np.sum((motion.angle_sides - reference.angle_sides) ** 2, axis=-1)
-    size = float(integrate_sides(reference.step, np.sum(reference.angle_sides**2, axis=-1)))
-    return float(np.sqrt(float(integrate_sides(reference.step, off)) / max(size, 1e-300)))
+    whole = reference.angle_sides
+    off = motion.angle_sides - whole
+    lost, size = (float(integrate_sides(reference.step, inner(v, v))) for v in (off, whole))
+    return float(np.sqrt(lost / max(size, 1e-300)))
 
 
 def _constant_factor(problem: Problem, before: float, after: float) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from des_cli.kinematics.attitude import geodesic_angle, rotation
 from des_cli.kinematics.chain import Chain, seat_rotation
 from des_cli.kinematics.response import respond_on, with_shortfall
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Floats, inner, length
 from des_cli.model.metric import (
     ANGULAR_ACCELERATION_DEVIATION,
     ANGULAR_ACCELERATION_ERROR,
@@ -96,7 +96,7 @@ class Deviation:
         return self.after.seat_angular_acceleration - self.before.seat_angular_acceleration
 
     def _energy(self, vectors: Floats) -> float:
-        return float(integrate_sides(self.reference.step, np.sum(vectors**2, axis=-1)))
+        return float(integrate_sides(self.reference.step, inner(vectors, vectors)))
 
     def _share(self, off: Floats, size: Floats) -> float:
         return float(np.sqrt(self._energy(off) / max(self._energy(size), 1e-300)))
@@ -116,9 +116,7 @@ class Deviation:
         return after / max(before, UNFELT_ANGULAR_ACCELERATION)
 
     def _turning_peak_ratio(self) -> float:
-        before, after = (
-            float(np.max(np.linalg.norm(turning, axis=-1))) for turning in self._turning
-        )
+        before, after = (float(np.max(length(turning))) for turning in self._turning)
         return after / max(before, UNFELT_ANGULAR_ACCELERATION)
 
     def _attitude(self) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from des_cli.kinematics.chain import chain_of
+from des_cli.model.arrays import inner
 from des_cli.model.machine import JOINTS
 from des_cli.model.metric import (
     ANGULAR_ACCELERATION_ERROR,
@@ -80,7 +81,7 @@ def _cost(
     deviation = Deviation.between(before, after, chains, profile.machine.gravity, shortfall=missing)
     moved = np.max(np.abs(after.angle - before.angle), axis=0)
     energies = (
-        float(integrate_sides(before.step, np.sum(each.coriolis_seat**2, axis=-1)))
+        float(integrate_sides(before.step, inner(each.coriolis_seat, each.coriolis_seat)))
         for each in (deviation.before, deviation.after)
     )
     return Change(

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Floats, length
 from des_cli.model.coriolis import COMPONENTS, Component
 from des_cli.model.felt import TurningSizes
 from des_cli.model.metrics import CrossCoupling, Objective, Part
@@ -39,6 +37,6 @@ def coriolis_metrics(
 def _part(response: Response, component: Component) -> Floats:
     """Return one part of the Coriolis vector, (n - 1, 2) [rad/s^2]."""
     if component.axes is None:
-        return np.asarray(np.linalg.norm(response.coriolis_seat, axis=-1))
+        return length(response.coriolis_seat)
     report = component.axes == "report"
     return (response.coriolis_report if report else response.coriolis_seat)[..., component.index]

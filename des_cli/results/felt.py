@@ -7,7 +7,7 @@ from typing import get_args
 import numpy as np
 
 from des_cli.kinematics.onset import largest_onset
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Floats, inner, length
 from des_cli.model.felt import (
     G_AXES,
     Felt,
@@ -65,9 +65,9 @@ def tilt_error(step: Floats, before: Floats, after: Floats) -> tuple[float | Non
         [deg], over the time in which neither vector is
         shorter than ``WEIGHTLESS``; None where there is no such time.
     """
-    across = np.linalg.norm(np.cross(before, after), axis=-1)
-    angle = np.degrees(np.arctan2(across, np.sum(before * after, axis=-1)))
-    sizes = (np.linalg.norm(before, axis=-1), np.linalg.norm(after, axis=-1))
+    across = length(np.cross(before, after))
+    angle = np.degrees(np.arctan2(across, inner(before, after)))
+    sizes = (length(before), length(after))
     clear = np.minimum(*sizes) >= WEIGHTLESS
     time = float(integrate_sides(step, clear.astype(float)))
     if not time:
@@ -95,7 +95,7 @@ def _sizes(step: Floats, before: Floats, after: Floats) -> list[tuple[float, flo
 
 
 def _with_magnitude(vectors: Floats) -> tuple[Floats, ...]:
-    return (*np.moveaxis(vectors, -1, 0), np.linalg.norm(vectors, axis=-1))
+    return (*np.moveaxis(vectors, -1, 0), length(vectors))
 
 
 def _g_by_axis(motion: Motion, before: Floats, after: Floats) -> dict[GAxis, GSizes]:
