@@ -1,7 +1,7 @@
 """What a terminal may be given: text that stays on its line and moves nothing.
 
 Paths, names and headers come from others. A newline in one could forge a line of its own,
-an escape sequence could hide one.
+an escape sequence could hide one. And what is meant for a terminal goes into no file.
 """
 
 from __future__ import annotations
@@ -24,6 +24,19 @@ def printable(text: str) -> str:
     return "".join(
         each if each.isprintable() else each.encode("unicode_escape").decode() for each in text
     )
+
+
+def fill_streams() -> None:
+    """Open what of stdin, stdout and stderr is closed on nothing, here and for workers.
+
+    The next file that is opened would have its number otherwise, and get what a library or
+    a worker writes there. That Python found it closed (``sys.stdout is None``) stays so.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:  # the numbers below it are taken: this is the next
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
 
 
 def give_up(stream: Any) -> None:

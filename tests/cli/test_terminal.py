@@ -108,3 +108,43 @@ def test_words_that_cannot_be_told_change_no_exit_code(
     done = run_with_words_to(tmp_path, python_environment, words, *args)
     assert done.returncode == code
     assert done.stdout.startswith(b"t_s,") is (code == 0)
+
+
+LOOKING = """
+import os
+from des_cli.__main__ import main
+from des_cli.batch import worker
+from des_cli.cli import main as command
+
+def note(name):
+    with open(name, "w") as file:
+        file.write(" ".join(os.path.realpath(f"/proc/self/fd/{number}") for number in range(3)))
+
+class Workers(command.Program):
+    def _dispatch(self, args, name, console):
+        note("here.txt")
+        from des_cli.batch.pool import local_executor
+        with local_executor(2) as pool:
+            pool.submit(os.system, "readlink /proc/$$/fd/0 /proc/$$/fd/1 /proc/$$/fd/2 > there.txt")
+        return super()._dispatch(args, name, console)
+
+if __name__ == "__main__":
+    command.program.__class__ = Workers
+    main()
+"""
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/fd"), reason="needs Linux's /proc")
+@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
+def test_no_file_takes_the_place_of_a_stream_that_is_closed(
+    small: str, tmp_path: Path, python_environment: dict[str, str], closed: str
+) -> None:
+    (tmp_path / "look.py").write_text(LOOKING)
+    line = f'exec "$0" look.py reduce {small} -o o.csv </dev/null >/dev/null 2>&1 {closed}'
+    done = subprocess.run(
+        ["sh", "-c", line, sys.executable], cwd=tmp_path, env=python_environment, check=False
+    )
+    assert done.returncode == 0
+    assert (tmp_path / "here.txt").read_text().split() == ["/dev/null"] * 3
+    assert (tmp_path / "there.txt").read_text().split()[::2] == ["/dev/null"] * 2
+    assert (tmp_path / "o.csv").read_bytes().startswith(b"t_s,")
