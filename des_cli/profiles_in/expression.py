@@ -133,6 +133,15 @@ class Expression:
                 value[part], rate[part] = dual.value, dual.rate
         return value, rate
 
+    def overflows(self, time: float, side: Side = 1) -> bool:
+        """Tell whether the first thing that goes wrong at a time is a number that is too large."""
+        try:
+            with np.errstate(all="raise", under="ignore"):
+                self._function(Dual(np.float64(time), np.float64(1.0)), side)
+        except FloatingPointError as error:
+            return str(error).startswith("overflow")
+        return False
+
 
 def parse_expression(text: str, *, variable: bool = True) -> Expression:
     """Read an expression, refusing everything but arithmetic.

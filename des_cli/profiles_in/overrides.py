@@ -103,7 +103,8 @@ def _value(text: str, label: str) -> Node:
         return _relabel(parse_yaml(text, label), label)
     except ProfileError as error:
         words = "; ".join(complaint.what for complaint in error.complaints)
-        raise _rejected(label, f"the value {words}") from None
+        of_it = "the value " if words.startswith(("is ", "holds ")) else "in the value "
+        raise _rejected(label, f"{of_it}{words}") from None
 
 
 def _relabel(node: Node, label: str) -> Node:

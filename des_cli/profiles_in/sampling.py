@@ -186,11 +186,12 @@ def sample_sides(pieces: tuple[Piece, ...], t: Floats, to_si: float, *, rates: b
     """
     start, rate_start = _sample(pieces, t, t[:-1], 1)
     end, rate_end = _sample(pieces, t, t[1:], -1)
-    for times, values in ((t[:-1], start), (t[1:], end)):
-        _require_finite(times, values * to_si, "the expression")
+    sides: tuple[tuple[Floats, Side], ...] = ((t[:-1], 1), (t[1:], -1))
+    for (times, side), values in zip(sides, (start, end), strict=True):
+        _require_finite(pieces, times, values * to_si, side, "the expression")
     if rates:
-        for times, values in ((t[:-1], rate_start), (t[1:], rate_end)):
-            _require_finite(times, values * to_si, "the rate of the expression")
+        for (times, side), values in zip(sides, (rate_start, rate_end), strict=True):
+            _require_finite(pieces, times, values * to_si, side, "the rate of the expression")
     # Adding zero turns a negative zero, as -60*(1 - cos(0)) makes, into zero.
     return Sides(*(part * to_si + 0.0 for part in (start, end, rate_start, rate_end)))
 
@@ -199,7 +200,7 @@ def sample_middle(pieces: tuple[Piece, ...], t: Floats, to_si: float) -> Floats:
     """Evaluate a command in the middle of every interval, (n - 1,)."""
     middle = 0.5 * (t[:-1] + t[1:])
     values = _sample(pieces, t, middle, 1)[0] * to_si
-    _require_finite(middle, values, "the expression")
+    _require_finite(pieces, middle, values, 1, "the expression")
     return values
 
 
@@ -219,19 +220,28 @@ def _sample(
     return value, rate
 
 
-def _require_finite(times: Floats, values: Floats, what: str) -> None:
+def _require_finite(
+    pieces: tuple[Piece, ...], times: Floats, values: Floats, side: Side, what: str
+) -> None:
     wrong = ~(np.abs(values) <= MAX_MAGNITUDE)
-    if wrong.any():
-        index = int(np.argmax(wrong))
-        first = times[index]
-        if np.isfinite(values[index]):
-            raise SamplingError(
-                f"{what} is beyond {MAX_MAGNITUDE:g} rad or rad/s at t = {first:.12g} s"
-            )
+    if not wrong.any():
+        return
+    index = int(np.argmax(wrong))
+    first = float(times[index])
+    if np.isfinite(values[index]):
         raise SamplingError(
-            f"{what} has no finite value at t = {first:.12g} s "
-            "(a division by zero, or outside a function's domain)"
+            f"{what} is beyond {MAX_MAGNITUDE:g} rad or rad/s at t = {first:.12g} s"
         )
+    if any(
+        piece.expression.overflows(first, side)
+        for piece in pieces
+        if piece.start <= first <= piece.stop
+    ):
+        raise SamplingError(f"{what} comes to a number that is too large at t = {first:.12g} s")
+    raise SamplingError(
+        f"{what} has no finite value at t = {first:.12g} s "
+        "(a division by zero, or outside a function's domain)"
+    )
 
 
 def first_jump(sides: Sides, t: Floats, tolerance: float) -> tuple[float, float, float] | None:

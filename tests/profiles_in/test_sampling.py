@@ -72,3 +72,23 @@ def test_the_first_time_without_a_value_is_named() -> None:
     with pytest.raises(SamplingError, match=r"beyond 1e\+06 rad or rad/s at t = 1 s"):
         sample_sides((Piece(0, 2, parse_expression("exp(20*t)")),), t, 1.0, rates=False)
     assert sample_sides((Piece(0, 2, parse_expression("sqrt(t)")),), t, 1.0, rates=False).end[-1]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("9**9**9", "comes to a number that is too large at t = 0 s"),
+        ("9**9**9 - 9**9**9", "comes to a number that is too large at t = 0 s"),
+        ("exp(1000*(t - 0.5))", "beyond 1e+06 rad or rad/s at t = 1 s"),
+        ("0*exp(1000*t)", "comes to a number that is too large at t = 1 s"),
+        ("1/exp(-1000*t)", "no finite value at t = 1 s (a division by zero, or outside"),
+        ("log(-9**9)", "no finite value at t = 0 s (a division by zero, or outside"),
+    ],
+)
+def test_why_there_is_no_value_is_said(text: str, words: str) -> None:
+    t = regular_grid(0.0, 2.0, 1.0)
+    with pytest.raises(SamplingError) as caught:
+        sample_sides((Piece(0, 2, parse_expression(text)),), t, 1.0, rates=False)
+    assert words in str(caught.value)
+    with pytest.raises(SamplingError, match="too large at t = 0.5 s"):
+        sample_middle((Piece(0, 1, parse_expression("exp(2000*t)")),), t[:2], 1.0)
