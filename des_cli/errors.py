@@ -78,6 +78,10 @@ class FileAccessError(DesError):
     exit_code = ExitCode.FILE
 
 
+class UnreadableError(FileAccessError):
+    """A file is there, and the system does not let it be read: nothing is known of it."""
+
+
 class UsageError(DesError):
     """The command was asked for something that it cannot mean."""
 

@@ -14,6 +14,7 @@ from des_cli.errors import (
     NoSolutionError,
     NotReleasedError,
     ProfileError,
+    UnreadableError,
     UsageError,
 )
 
@@ -22,6 +23,7 @@ from des_cli.errors import (
     ("kind", "code"),
     [
         (FileAccessError, 1),
+        (UnreadableError, 1),
         (UsageError, 2),
         (ProfileError, 3),
         (NoSolutionError, 4),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import codecs
+import errno
 import os
 import stat
 from pathlib import Path
 from typing import BinaryIO
 
-from des_cli.errors import Complaint, FileAccessError, ProfileError
+from des_cli.errors import Complaint, FileAccessError, ProfileError, UnreadableError
 from des_cli.profiles_in.wording import plain
 
 STDIN_LABEL = "<stdin>"
@@ -17,6 +18,9 @@ _OPEN = os.O_RDONLY | sum(
     getattr(os, flag, 0) for flag in ("O_BINARY", "O_CLOEXEC", "O_NOCTTY", "O_NONBLOCK")
 )
 """Opening waits for nobody, and makes no terminal that of this process."""
+
+_ABSENT = (errno.ENOENT, errno.ENOTDIR, errno.ELOOP, errno.ENAMETOOLONG)
+"""What the system says where there is no such file; anything else keeps one from being read."""
 
 
 def read_source(path: Path, label: str, mib: int | None, *, pipes: bool = False) -> bytes:
@@ -38,8 +42,9 @@ def read_source(path: Path, label: str, mib: int | None, *, pipes: bool = False)
     Raises
     ------
     FileAccessError
-        If there is no such file, it is a folder or a device, it cannot be
-        read, or it is too long.
+        If there is no such file, it is a folder or a device, or it is too long.
+    UnreadableError
+        If it cannot be read.
     """
     try:
         # Looked at before it is opened, which alone moves some devices, and again afterwards,
@@ -53,7 +58,9 @@ def read_source(path: Path, label: str, mib: int | None, *, pipes: bool = False)
     except (OSError, ValueError) as error:
         # A name with a NUL byte raises ValueError.
         words = getattr(error, "strerror", None) or "is not a file name"
-        raise _refused(label, f"cannot be read: {words}") from None
+        there = isinstance(error, OSError) and error.errno not in _ABSENT
+        kind = UnreadableError if there else FileAccessError
+        raise kind([Complaint(label, f"cannot be read: {words}")]) from None
 
 
 def read_stream(stream: BinaryIO, label: str, mib: int | None) -> bytes:

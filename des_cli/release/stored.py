@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from des_cli.errors import BrokenRunError, Complaint, DesError
+from des_cli.errors import BrokenRunError, Complaint, DesError, UnreadableError
 from des_cli.model.arrays import Floats
 from des_cli.model.command_table import CommandTable
 from des_cli.model.machine import JOINTS, Machine, Seat
@@ -79,6 +79,8 @@ def check_stored_run(
     ------
     BrokenRunError
         If a file was changed, cut or removed since the run was written.
+    UnreadableError
+        If nothing is known to be wrong but that a file cannot be read.
     """
     run = _intact(folder)
     own, seat, arm = _setting(run)
@@ -140,6 +142,8 @@ def check_stored_table(
 def _intact(folder: str) -> StoredRun:
     try:
         run = read_run(folder)
+    except UnreadableError:
+        raise
     except DesError as error:
         raise BrokenRunError(error.complaints) from error
     home = run.folder

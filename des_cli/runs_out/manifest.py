@@ -100,10 +100,12 @@ def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
     ------
     FileAccessError
         If there is none, or it is not one of this format; with all complaints.
+    UnreadableError
+        If it cannot be read.
     """
     path = Path(folder) / MANIFEST
     with plain_words(path, "cannot be read"):
-        if not path.exists():
+        if not _may_exist(path):
             raise FileAccessError([Complaint(str(folder), f"is not a run: it has no {MANIFEST}")])
     data = read_bytes(path)
     manifest = parse_object(path, data)
@@ -111,6 +113,13 @@ def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
     if complaints:
         raise FileAccessError(complaints)
     return manifest
+
+
+def _may_exist(path: Path) -> bool:
+    try:
+        return path.exists()
+    except PermissionError:  # of its folder
+        return True
 
 
 def read_bytes(path: Path) -> bytes:

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from des_cli.errors import Complaint, FileAccessError
+from des_cli.errors import Complaint, FileAccessError, UnreadableError
 from des_cli.model.arrays import Floats
 from des_cli.model.run import Run
 from des_cli.runs_out import atomic
@@ -135,16 +135,22 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
     Raises
     ------
     FileAccessError
-        If a file is missing, changed or unreadable; with all complaints.
+        If a file is missing or changed; with all complaints.
+    UnreadableError
+        If nothing is known to be wrong but that a file cannot be read.
     """
     home = Path(folder)
     manifest = read_manifest(home)
     complaints: list[Complaint] = []
+    unreadable: list[Complaint] = []
     content: dict[str, bytes] = {}
     for entry in manifest["files"]:
         path = home / entry["name"]
         try:
             data = read_bytes(path)
+        except UnreadableError as error:
+            unreadable += error.complaints
+            continue
         except FileAccessError as error:
             complaints += error.complaints
             continue
@@ -160,7 +166,9 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
         if name not in listed
     ]
     if complaints:
-        raise FileAccessError(complaints)
+        raise FileAccessError([*complaints, *unreadable])
+    if unreadable:
+        raise UnreadableError(unreadable)
     return StoredRun(
         name=manifest["profile"]["name"],
         folder=home,

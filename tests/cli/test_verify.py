@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -60,6 +61,22 @@ def test_a_changed_file_ends_with_3_and_names_it(invoke, stored: str, tmp_path: 
     assert result.exit_code == 3
     assert result.stderr.startswith(f"{stored}/commands.csv: is not the file that the manifest")
     assert result.stdout == ""
+
+
+def test_a_file_that_cannot_be_read_ends_with_1(
+    invoke, stored: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    really = os.open
+
+    def refuse(path: os.PathLike[str], *args: int) -> int:
+        if Path(path).name == "metrics.json":
+            raise PermissionError(13, "Permission denied")
+        return really(path, *args)
+
+    monkeypatch.setattr(os, "open", refuse)
+    result = invoke("verify", stored)
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert result.stderr == f"{stored}/metrics.json: cannot be read: Permission denied\n"
 
 
 def test_another_machine_is_a_file_or_a_name(invoke, stored: str, tmp_path: Path) -> None:

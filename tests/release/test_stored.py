@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from des_cli import load_profile, reduce_profile
-from des_cli.errors import BrokenRunError, ExitCode
+from des_cli.errors import BrokenRunError, ExitCode, UnreadableError
 from des_cli.model.machine import Machine, Seat
 from des_cli.model.machines import DES
 from des_cli.model.run import Run
@@ -95,6 +95,44 @@ def test_a_run_without_its_manifest_is_none(folder: Path) -> None:
     with pytest.raises(BrokenRunError, match="has no manifest") as caught:
         check_stored_run(str(folder))
     assert caught.value.exit_code == ExitCode.PROFILE
+
+
+@pytest.mark.parametrize("name", ["manifest.json", "commands.csv", "metrics.json"])
+def test_a_file_that_cannot_be_read_is_not_called_changed(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    really = os.open
+
+    def refuse(path: os.PathLike[str], *args: int) -> int:
+        if Path(path).name == name:
+            raise PermissionError(13, "Permission denied")
+        return really(path, *args)
+
+    monkeypatch.setattr(os, "open", refuse)
+    with pytest.raises(UnreadableError, match=f"{name}: cannot be read: Perm") as caught:
+        check_stored_run(str(folder))
+    assert caught.value.exit_code == ExitCode.FILE
+    if name == "manifest.json":
+        return
+    # What is wrong all the same is not hidden behind it.
+    (folder / "trajectory.parquet").unlink()
+    with pytest.raises(BrokenRunError, match=f"{name}: cannot be read: Perm"):
+        check_stored_run(str(folder))
+
+
+def test_a_folder_that_cannot_be_searched_may_hold_a_run(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    really = os.stat
+
+    def refuse(path: os.PathLike[str], **options: object) -> os.stat_result:
+        if str(path).startswith(str(folder / "")):
+            raise PermissionError(13, "Permission denied")
+        return really(path, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(os, "stat", refuse)
+    with pytest.raises(UnreadableError, match="cannot be read: Permission denied"):
+        check_stored_run(str(folder))
 
 
 def test_a_table_that_is_not_of_the_solution_is_found_behind_right_digests(
