@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from multiprocessing import get_context
+from multiprocessing import get_context, resource_tracker
 from typing import Any, TypeVar
 
 from des_cli.batch.worker import begin, do
@@ -43,6 +43,7 @@ def local_executor(workers: int) -> Iterator[Executor | None]:
             yield None
             return
         context = get_context("spawn")  # not forked: numpy's threads do not survive a fork
+        _start_tracker()
         theirs, ours = context.Pipe(duplex=False)
         with theirs, ours:
             pool = _Pool(count, context, initializer=begin, initargs=(os.getpid(), theirs))
@@ -53,6 +54,17 @@ def local_executor(workers: int) -> Iterator[Executor | None]:
                 raise
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _start_tracker() -> None:
+    """Start multiprocessing's resource tracker, which puts away what this process cannot.
+
+    It is to outlive a signal to all processes of a terminal, and hears by itself all but
+    INT and TERM. Without it whatever is released later is a traceback on stderr.
+    """
+    if os.name != "nt":
+        with undisturbed():
+            resource_tracker.ensure_running()
 
 
 class _Pool(ProcessPoolExecutor):

@@ -6,6 +6,7 @@ Every fifth batch has workers. In every other there are earlier runs that it is 
 import os
 import random
 import signal
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -15,7 +16,7 @@ import pytest
 
 from des_cli.runs_out.run_folder import read_run
 from tests.cli.conftest import SMALL
-from tests.support.processes import ENDINGS, marked
+from tests.support.processes import ENDINGS, MARK, marked, start
 from tests.support.ready_command import WORDS, ReadyCommand
 from tests.support.run_files import tree
 
@@ -156,3 +157,32 @@ def test_a_signal_ends_with_its_code_and_leaves_nothing_half_built(batch: Batch,
         assert "Traceback" not in words
         assert hidden(out) == []
     assert stopped > 0
+
+
+@pytest.mark.parametrize("name", sorted(ENDINGS))
+def test_a_signal_to_all_of_a_terminal_ends_without_a_traceback(
+    batch: Batch, tmp_path: Path, python_environment: dict[str, str], name: str
+) -> None:
+    """A terminal sends it to the workers too, and to what multiprocessing started."""
+    words = tmp_path / WORDS
+    out = batch.folder(earlier=False)
+    line = ("-m", "des_cli", "reduce", *(f"{each}.yaml" for each in NAMES), "-o", out.name)
+    with words.open("wb") as stderr:
+        process = start(
+            sys.executable,
+            *line,
+            *("--no-plots", "--jobs", "2"),
+            cwd=out.parent,
+            env={**python_environment, MARK: str(out)},
+            stderr=stderr,
+            start_new_session=True,
+        )
+    for _ in range(3000):
+        if sum("spawn_main" in each for each in marked(str(out)).values()) == 2:
+            break
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.Signals[name])
+    assert process.wait() == ENDINGS[name]
+    assert left_of(out) == {}
+    assert "Traceback" not in words.read_text()
+    assert "resource_tracker" not in words.read_text()
