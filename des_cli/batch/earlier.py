@@ -21,11 +21,8 @@ _NO_TABLE = (ExitCode.PROFILE, ExitCode.NO_SOLUTION, ExitCode.NOT_RELEASED)
 def stands(output: Output, target: Path) -> bool:
     """Tell whether a command table may be found where a job writes."""
     from des_cli.runs_out.manifest import is_run
-    from des_cli.runs_out.run_folder import COMMANDS
 
-    if output.table_format is not None:
-        return target.is_file()
-    return is_run(target) or os.path.lexists(target / COMMANDS)
+    return _table_stands(output, target) or (output.table_format is None and is_run(target))
 
 
 def settle(output: Output, target: Path, result: JobResult) -> tuple[str, ...]:
@@ -56,6 +53,8 @@ def settle(output: Output, target: Path, result: JobResult) -> tuple[str, ...]:
         if _withdraw(output, target):
             return (f"withdrew the earlier {target}: it is not what this profile asks for",)
     except (DesError, OSError) as error:
+        if not _table_stands(output, target):
+            left = f"withdrew the command table of the earlier {target}, and left the rest of it"
         return (*Failure.of(error).lines, left)
     return (f"{left}, and it has no manifest of a run by which to remove it",)
 
@@ -68,6 +67,14 @@ def unnamed(output: Output, result: JobResult) -> tuple[str, ...]:
         f"left an earlier run of {result.source} in {output.out}, if it is there, as it is: "
         "the name of the profile cannot be read",
     )
+
+
+def _table_stands(output: Output, target: Path) -> bool:
+    from des_cli.runs_out.run_folder import COMMANDS
+
+    if output.table_format is not None:
+        return target.is_file()
+    return os.path.lexists(target / COMMANDS)
 
 
 def _withdraw(output: Output, target: Path) -> bool:

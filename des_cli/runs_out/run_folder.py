@@ -180,10 +180,11 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
 
 
 def discard_run(folder: str | os.PathLike[str]) -> None:
-    """Remove the outputs that a folder's manifest lists, the manifest first.
+    """Remove the outputs that a folder's manifest lists, the command table first.
 
-    Nothing else in the folder is touched. A folder without a run is left as it
-    is.
+    The manifest goes last: whatever ends this midway, no table is left, and by what is left
+    the next call finishes it. Nothing else in the folder is touched. A folder without a
+    run is left as it is.
 
     Raises
     ------
@@ -193,12 +194,10 @@ def discard_run(folder: str | os.PathLike[str]) -> None:
     home = Path(folder)
     if not is_run(home):
         return
-    names = [entry["name"] for entry in read_manifest(home)["files"]]
-    try:
-        _remove(home, [MANIFEST])
-    finally:
-        # An interruption in between would leave files that nothing vouches for.
-        _remove(home, names)
+    names = {entry["name"] for entry in read_manifest(home)["files"]}
+    with undisturbed():
+        for part in (names & {COMMANDS}, names - {COMMANDS}, {MANIFEST}):
+            _remove(home, sorted(part))
 
 
 def is_free(target: Path) -> bool:

@@ -92,6 +92,26 @@ def test_what_cannot_be_withdrawn_is_said(folder: Path, monkeypatch: pytest.Monk
     assert is_run(folder)
 
 
+def test_a_table_that_is_gone_is_not_said_to_be_left(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    really = Path.unlink
+
+    def no(path: Path, **options: bool) -> None:
+        if path.name == "metrics.json":
+            raise PermissionError(13, "Permission denied", "metrics.json")
+        really(path, **options)
+
+    monkeypatch.setattr(Path, "unlink", no)
+    lines = settle(output(folder), folder, failed(ExitCode.PROFILE))
+    assert "metrics.json: cannot be removed: permission denied" in lines[0]
+    assert lines[-1].startswith(f"withdrew the command table of the earlier {folder}")
+    monkeypatch.undo()
+    (words,) = settle(output(folder), folder, failed(ExitCode.PROFILE))
+    assert words.startswith(f"withdrew the earlier {folder}")
+    assert tree(folder) == {}
+
+
 def test_nothing_is_said_where_nothing_stands_or_nothing_failed(
     tmp_path: Path, folder: Path
 ) -> None:

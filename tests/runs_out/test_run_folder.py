@@ -313,3 +313,34 @@ def test_discarding_follows_no_link_out_of_the_folder(tmp_path: Path, stored: Pa
     discard_run(stored)
     assert (outside / "x.png").read_bytes() == b"mine"
     assert not is_run(stored)
+
+
+@pytest.mark.parametrize("done", range(5))
+def test_a_removal_that_is_killed_leaves_no_table_and_is_finished_by_the_next(
+    stored: Path, monkeypatch: pytest.MonkeyPatch, done: int
+) -> None:
+    plot = b"png"
+    (stored / "plots").mkdir()
+    (stored / "plots" / "x.png").write_bytes(plot)
+    (stored / "mine.txt").write_bytes(b"mine")
+    manifest = json.loads((stored / "manifest.json").read_bytes())
+    digest = hashlib.sha256(plot).hexdigest()
+    listed = entry(name="plots/x.png") | {"size": len(plot), "sha256": digest}
+    rewrite(stored, files=[*manifest["files"], listed])
+    really, removed = Path.unlink, []
+
+    def kill(path: Path, **options: bool) -> None:
+        if len(removed) == done:
+            raise SystemExit
+        really(path, **options)
+        removed.append(path.name)
+
+    monkeypatch.setattr(Path, "unlink", kill)
+    with pytest.raises(SystemExit):
+        discard_run(stored)
+    monkeypatch.undo()
+    assert removed[:1] == ["commands.csv"][:done]
+    assert is_run(stored)
+    discard_run(stored)
+    assert tree(stored) == {"mine.txt": b"mine"}
+    assert not (stored / "plots").exists()
