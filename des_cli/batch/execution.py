@@ -53,7 +53,7 @@ def run_job(
     def whole() -> JobResult:
         if output.resume and _holds_run_of(target, read):
             return JobResult(source.name, read.name, written=str(target), state="kept")
-        _refuse_missing_folder(output, target)
+        _refuse_place(output, target)
         if output.dry_run:
             _refuse_existing(output, target)
             return JobResult(source.name, read.name, written=str(target), state="planned")
@@ -182,11 +182,21 @@ def _write(job: Job, run: Run, target: Path) -> bytes | None:
     return None
 
 
-def _refuse_missing_folder(output: Output, target: Path) -> None:
-    """Refuse before solving a table whose folder is missing; that of a run is made."""
-    if output.table_format is None or output.out == STANDARD_STREAM or target.parent.is_dir():
+def _refuse_place(output: Output, target: Path) -> None:
+    """Refuse before solving where no table or run can be; the folder of a run is made."""
+    if output.out == STANDARD_STREAM:
         return
-    raise FileAccessError([Complaint(str(target), "cannot be written: the folder does not exist")])
+    if output.table_format is None:
+        from des_cli.runs_out.run_folder import require_place
+
+        require_place(target)
+        return
+    from des_cli.runs_out.atomic import require_file
+
+    if not target.parent.is_dir():
+        what = "cannot be written: the folder does not exist"
+        raise FileAccessError([Complaint(str(target), what)])
+    require_file(target)
 
 
 def _refuse_existing(output: Output, target: Path) -> None:

@@ -39,10 +39,12 @@ def report(console: Console, runs: tuple[str, ...], out: str) -> None:
     A RUN is a run folder, or a folder of run folders. The page needs no
     network and no other file.
     """
-    from des_cli.runs_out.atomic import write_file
+    from des_cli.runs_out.atomic import require_file, write_file
     from des_cli.runs_out.run_folder import StoredRun, read_run
     from des_cli.show.page.page import render_report
 
+    if out != STANDARD_STREAM:
+        require_file(Path(out))
     stored: list[StoredRun] = []
     complaints: list[Complaint] = []
     with console.working() as line:

@@ -108,16 +108,21 @@ def refuse_existing(out: str | None, plot: str | None, overwrite: bool) -> None:
     """Refuse before solving what would be refused when writing."""
     if plot is not None and Path(plot).suffix.lower() != ".png":
         raise click.UsageError(f"--plot draws a PNG: name it FILE.png, not {plot}.")
-    complaints = []
+    from des_cli.runs_out.atomic import exists, require_file
+
+    complaints: list[Complaint] = []
     for name in (out, plot):
         if name is None or name == STANDARD_STREAM:
             continue
         path = Path(name)
-        if path.is_dir():
-            complaints.append(Complaint(name, "is a folder; name a file"))
-        elif not path.parent.is_dir():
-            complaints.append(Complaint(name, "cannot be written: its folder does not exist"))
-        elif path.is_file() and not overwrite:
-            complaints.append(Complaint(name, "exists; --overwrite replaces it"))
+        try:
+            require_file(path)
+            if not path.parent.is_dir():
+                what = "cannot be written: its folder does not exist"
+                complaints.append(Complaint(name, what))
+            elif path.is_file() and not overwrite:
+                raise exists(path)
+        except FileAccessError as error:
+            complaints += error.complaints
     if complaints:
         raise FileAccessError(complaints)

@@ -34,8 +34,8 @@ def write_file(
     """Write a whole file, or leave everything as it was.
 
     The bytes go to a temporary beside the target, reach the disk, and then
-    take the name. A symbolic link is followed. A device or a pipe is written
-    to directly: it has no name to give.
+    take the name. A symbolic link is followed. What `require_file` lets pass and is no
+    file, a device or a pipe without a name, is written to directly.
 
     Parameters
     ----------
@@ -59,11 +59,11 @@ def write_file(
         If the file exists and may not be replaced, or cannot be written.
     """
     shown = Path(path)
+    require_file(shown)
     with plain_words(shown, "cannot be written", missing="its folder does not exist"):
         existing = _mode(shown)
         if existing is not None and not stat.S_ISREG(existing):
             accept(data)
-            # Opening a folder fails by itself.
             with open(shown, "wb") as special:
                 special.write(data)
             return shown
@@ -84,6 +84,32 @@ def write_file(
                 _name_once(temporary, target, shown)
             sync_folder(target.parent)
     return shown
+
+
+def require_file(path: Path) -> None:
+    """Refuse a name that cannot be a file's, for what it stands for now.
+
+    A device is none, but can be written to, and so can a pipe that has no name of its own:
+    ``/dev/stdout``, or ``>(command)`` of a shell. One that has a name is waited for until
+    somebody reads it, perhaps for ever.
+
+    Raises
+    ------
+    FileAccessError
+    """
+    with plain_words(path, "cannot be written", missing="its folder does not exist"):
+        mode = _mode(path)
+        if mode is None or stat.S_ISREG(mode) or stat.S_ISCHR(mode):
+            return
+        if stat.S_ISFIFO(mode):
+            if not os.path.lexists(os.path.realpath(path)):
+                return
+            what = "is a pipe, not a file; write to '-', and into the pipe with >"
+        elif stat.S_ISDIR(mode):
+            what = "is a folder; name a file"
+        else:
+            what = "is not a file; name another"
+    raise FileAccessError([Complaint(str(path), what)])
 
 
 def write_through(path: Path, data: bytes) -> None:

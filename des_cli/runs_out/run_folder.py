@@ -200,20 +200,37 @@ def discard_run(folder: str | os.PathLike[str]) -> None:
             _remove(home, sorted(part))
 
 
+def require_place(target: Path) -> None:
+    """Refuse the name of a run folder where something else stands, or in a parent's place.
+
+    Raises
+    ------
+    FileAccessError
+    """
+    with plain_words(target, "cannot be written"):
+        # What is there at the nearest must be a folder; the rest is made.
+        path = next((each for each in (target, *target.parents) if os.path.lexists(each)), None)
+        if path is None or path.is_dir():
+            return
+        what = "is a file" if path.is_file() else "is no folder"
+        if not path.exists():
+            what = "is a link that leads nowhere"
+    raise FileAccessError([Complaint(str(path), f"{what}; a run needs a folder, name another")])
+
+
 def is_free(target: Path) -> bool:
     """Tell whether nothing stands where a run is to be; leftovers of a killed one do not count."""
     with plain_words(target, "cannot be written"):
         if not target.exists():
             return True
-        return target.is_dir() and all(atomic.is_temporary(path.name) for path in target.iterdir())
+        return all(atomic.is_temporary(path.name) for path in target.iterdir())
 
 
 def _require_free(target: Path, overwrite: bool) -> None:
-    if (overwrite and target.is_dir()) or is_free(target):
+    require_place(target)
+    if overwrite or is_free(target):
         return
-    if not target.is_dir():
-        what = "is a file; a run needs a folder, name another"
-    elif (target / MANIFEST).exists():
+    if (target / MANIFEST).exists():
         what = "already holds a run; --overwrite replaces it"
     else:
         what = "is not empty and holds no run; name another folder, or --overwrite to write into it"

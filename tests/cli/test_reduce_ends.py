@@ -1,10 +1,12 @@
 """``reduce``: what is refused, what has no solution, and with which exit code."""
 
 import os
+import socket
 
 import numpy as np
 import pytest
 
+from des_cli import pipeline
 from des_cli.runs_out.lock import locked
 from des_cli.runs_out.manifest import is_run
 from tests.support.run_files import csv_rows
@@ -163,6 +165,53 @@ def test_an_existing_output_is_refused_before_solving(invoke, small: str, tmp_pa
         assert invoke(*again).exit_code == 0
         replaced = (target if target.is_file() else target / "commands.csv").read_bytes()
         assert replaced != before
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+@pytest.mark.parametrize("how", [[], ["--overwrite"], ["--dry-run"]], ids=" ".join)
+@pytest.mark.parametrize(
+    ("out", "words"),
+    [
+        ("pipe.csv", "pipe.csv: is a pipe, not a file; write to '-', and into the pipe with >"),
+        ("socket.csv", "socket.csv: is not a file; name another"),
+        ("pipe", "pipe: is no folder; a run needs a folder, name another"),
+        ("file", "file: is a file; a run needs a folder, name another"),
+        ("file/below/it", "file: is a file; a run needs a folder, name another"),
+        ("link", "link: is a link that leads nowhere; a run needs a folder, name another"),
+        ("link/below", "link: is a link that leads nowhere; a run needs a folder, name another"),
+        (None, "runs/small: is a link that leads nowhere; a run needs a folder, name another"),
+    ],
+)
+def test_what_can_hold_no_output_is_refused_before_solving(
+    invoke,
+    small: str,
+    tmp_path,
+    monkeypatch: pytest.MonkeyPatch,
+    out: str | None,
+    words: str,
+    how: list[str],
+) -> None:
+    for name in ("pipe.csv", "pipe"):
+        os.mkfifo(tmp_path / name)
+    (tmp_path / "file").write_bytes(b"mine")
+    (tmp_path / "runs").mkdir()
+    for name in ("link", "runs/small"):
+        (tmp_path / name).symlink_to("nowhere")
+    monkeypatch.setattr(pipeline, "reduce_profile", lambda *_, **__: pytest.fail("solved"))
+    before = sorted(tmp_path.rglob("*"))
+    with socket.socket(socket.AF_UNIX) as listening:
+        listening.bind("socket.csv")
+        result = invoke("reduce", small, *how, *([] if out is None else ["-o", out]))
+        (tmp_path / "socket.csv").unlink()
+    assert (result.exit_code, result.stdout, result.stderr) == (1, "", f"{words}\n")
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/stdout"), reason="there is no such device here")
+def test_a_pipe_without_a_name_is_written_to(command, small: str) -> None:
+    table = command("-q", "reduce", small, "-o", "-").stdout
+    done = command("-q", "reduce", small, "-o", "/dev/stdout", "-f", "csv")
+    assert (done.returncode, done.stdout) == (0, table)
 
 
 def test_a_missing_folder_of_a_table_is_refused_before_solving(invoke, small: str) -> None:

@@ -1,5 +1,6 @@
 """``report``: one page of runs."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -42,6 +43,15 @@ def test_named_runs_to_a_file_or_stdout(invoke, tmp_path: Path) -> None:
 def test_a_run_named_twice_is_on_the_page_once(invoke) -> None:
     result = invoke("report", "runs", "runs/one", "-o", "page.html")
     assert result.stderr == "2 runs in page.html\n"
+
+
+@pytest.mark.usefixtures("two_runs", "undrawn")
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_page_is_not_kept_waiting_by_a_pipe(invoke, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "page.html")
+    result = invoke("report", "-o", "page.html")
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert result.stderr.startswith("page.html: is a pipe, not a file; ")
 
 
 def test_no_run_is_1_and_says_how_to_make_one(invoke, tmp_path: Path) -> None:

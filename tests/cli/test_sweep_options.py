@@ -1,5 +1,7 @@
 """What a sweep varies and where it writes: what is refused before anything is computed."""
 
+import os
+
 import pytest
 
 from des_cli.cli import sweep as module
@@ -18,6 +20,19 @@ def test_what_exists_is_refused_before_anything_is_computed(
     assert result.stderr == f"{taken}: exists; --overwrite replaces it\n"
     assert invoke(*args, "--overwrite").exit_code == 0
     assert (tmp_path / taken).read_bytes() != b"mine"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_pipes_are_refused_before_anything_is_computed(
+    invoke, small: str, tmp_path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("points.csv", "curve.png"):
+        os.mkfifo(tmp_path / name)
+    monkeypatch.setattr(module, "_plan", lambda *_: pytest.fail("went on"))
+    result = invoke("sweep", small, "--r2s", "1", "--plot", "curve.png", "-o", "points.csv")
+    assert result.exit_code == 1
+    starts = [line.partition("; ")[0] for line in result.stderr.splitlines()]
+    assert starts == [f"{name}: is a pipe, not a file" for name in ("points.csv", "curve.png")]
 
 
 @pytest.mark.parametrize(

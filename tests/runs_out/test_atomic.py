@@ -161,11 +161,24 @@ def test_a_device_is_written_to_and_not_replaced() -> None:
     assert stat.S_ISCHR(os.stat("/dev/null").st_mode)
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_pipe_with_a_name_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for overwrite in (False, True):
+        with pytest.raises(FileAccessError, match="pipe: is a pipe, not a file"):
+            write_file(tmp_path / "pipe", b"new", overwrite=overwrite)
+    read, write = os.pipe()
+    write_file(f"/dev/fd/{write}", b"new")
+    assert os.read(read, 9) == b"new"
+    for each in (read, write):
+        os.close(each)
+
+
 @pytest.mark.parametrize(
     ("name", "words"),
     [
         ("absent/x.csv", "its folder does not exist"),
-        ("folder", "a folder of that name exists"),
+        ("folder", "is a folder; name a file"),
         ("file/x.csv", "a part of the path is a file"),
         ("x" * 300, "the name is too long"),
         ("nul\0byte", "null"),
