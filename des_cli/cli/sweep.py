@@ -19,12 +19,12 @@ from des_cli.cli.sweep_options import (
     DEFAULT_CONTROLS,
     DEFAULT_METRIC,
     Budgets,
+    outputs_held,
     point_format,
     read_controls,
     read_swept_budgets,
     read_weights,
     refuse_budgets,
-    refuse_existing,
     refuse_weights,
 )
 from des_cli.errors import ExitCode
@@ -131,19 +131,19 @@ def sweep(
     form = point_format(out, table_format)
     if form != "text" and out in (None, STANDARD_STREAM):
         refuse_binary_on_terminal(form)
-    refuse_existing(out, plot, overwrite)
-    source = source_of(
-        profile,
-        settings,
-        machine=machine,
-        stdin=read_stdin((profile,), caps),
-        columns=columns,
-        separator=separator,
-        decimal=decimal,
-        caps=caps,
-    )
-    plans = _plan(reduction, swept, r2s or (), controls)
-    return _run(console, source, plans, jobs, out, form, plot, overwrite)
+    with outputs_held(out, plot, overwrite):
+        source = source_of(
+            profile,
+            settings,
+            machine=machine,
+            stdin=read_stdin((profile,), caps),
+            columns=columns,
+            separator=separator,
+            decimal=decimal,
+            caps=caps,
+        )
+        plans = _plan(reduction, swept, r2s or (), controls)
+        return _run(console, source, plans, jobs, out, form, plot, overwrite)
 
 
 def _plan(

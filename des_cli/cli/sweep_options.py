@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -104,16 +107,30 @@ def refuse_budgets(reduction: dict[str, Any], swept: Budgets | None) -> None:
         raise click.UsageError(f"--budget keeps {swept[0]}, which is swept: leave one of them out.")
 
 
-def refuse_existing(out: str | None, plot: str | None, overwrite: bool) -> None:
-    """Refuse before solving what would be refused when writing."""
+@contextmanager
+def outputs_held(out: str | None, plot: str | None, overwrite: bool) -> Iterator[None]:
+    """Refuse before solving what would be refused when writing, and keep other runs off it."""
+    from des_cli.runs_out.lock import locked
+
     if plot is not None and Path(plot).suffix.lower() != ".png":
         raise click.UsageError(f"--plot draws a PNG: name it FILE.png, not {plot}.")
+    names = [name for name in (out, plot) if name not in (None, STANDARD_STREAM)]
+    if len({os.path.realpath(name) for name in names}) < len(names):
+        raise click.UsageError(f"--out and --plot both name {plot}: give each a file of its own.")
+    _refuse_existing(names, overwrite)
+    with ExitStack() as stack:
+        for name in names:
+            stack.enter_context(locked(Path(name)))
+        # Who held one may have written it meanwhile.
+        _refuse_existing(names, overwrite)
+        yield
+
+
+def _refuse_existing(names: Sequence[str], overwrite: bool) -> None:
     from des_cli.runs_out.atomic import exists, require_file
 
     complaints: list[Complaint] = []
-    for name in (out, plot):
-        if name is None or name == STANDARD_STREAM:
-            continue
+    for name in names:
         path = Path(name)
         try:
             require_file(path)
