@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
@@ -15,7 +16,7 @@ from des_cli.errors import Complaint, DesError, Failure, FileAccessError
 from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.notice import Notice
 from des_cli.model.stage import OnStage, untold
-from des_cli.runs_out.lock import locked
+from des_cli.runs_out.lock import clear_lock, locked
 from des_cli.signals import raise_if_stopped
 
 # What needs numpy is imported when a job runs, as in `source`.
@@ -52,6 +53,8 @@ def run_job(
 
     def whole() -> JobResult:
         if output.resume and _holds_run_of(target, read):
+            if not output.dry_run:
+                _clear_traces(target)
             return JobResult(source.name, read.name, written=str(target), state="kept")
         _refuse_place(output, target)
         if output.dry_run:
@@ -229,6 +232,14 @@ def _holds_run_of(folder: Path, profile: Profile) -> bool:
     except (DesError, OSError):
         return False
     return bool(profile.sha256) and stored.sha256 == profile.sha256
+
+
+def _clear_traces(target: Path) -> None:
+    """Remove what a process left that was killed between its last file and its end."""
+    from des_cli.runs_out.atomic import clear_leftovers
+
+    clear_leftovers(Path(os.path.realpath(target)))
+    clear_lock(target)
 
 
 def _weighted_components(profile: Profile) -> tuple[str, ...]:

@@ -52,7 +52,7 @@ def locked(target: Path) -> Iterator[None]:
             yield
             return
     home = Path(os.path.realpath(target))
-    path = home.parent / f".{short_stem(home.name)}.lock"
+    path = _lock_file(home)
     made: list[Path] = []
     held: list[int] = []
     try:
@@ -67,6 +67,13 @@ def locked(target: Path) -> Iterator[None]:
             # A signal came just before they were kept waiting; no other one is heard.
             _let_go(held, path, made)
             raise
+
+
+def clear_lock(target: Path) -> None:
+    """Remove the lock file of a process that was killed when it had written all."""
+    path = _lock_file(Path(os.path.realpath(target)))
+    if path.is_file():
+        remove_unless_held(path)
 
 
 def short_stem(name: str) -> str:
@@ -125,6 +132,10 @@ def remove_all(path: Path) -> None:
             shutil.rmtree(path, ignore_errors=True)
         else:
             path.unlink()
+
+
+def _lock_file(home: Path) -> Path:
+    return home.parent / f".{short_stem(home.name)}.lock"
 
 
 def _let_go(held: list[int], path: Path, made: list[Path]) -> None:

@@ -1,6 +1,8 @@
 """One job, from its source to its output."""
 
+import os
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -31,6 +33,20 @@ def test_result_carries_what_a_person_needs(tmp_path: Path) -> None:
     assert result.metrics is not None
     assert result.log
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="nothing is locked on Windows")
+def test_a_run_that_is_kept_has_no_traces_of_a_killed_process_beside_it(tmp_path: Path) -> None:
+    output = Output(str(tmp_path), plots=False, resume=True)
+    assert run_job(Job(COBRA, output)).state == "reduced"
+    lock, partial = tmp_path / ".cobra.lock", tmp_path / ".cobra.partial-0123abcd"
+    lock.write_text("1\n")
+    partial.mkdir()
+    (partial / "commands.csv").write_bytes(b"of an earlier run")
+    assert run_job(Job(COBRA, replace(output, dry_run=True))).state == "kept"
+    assert lock.exists()
+    assert run_job(Job(COBRA, output)).state == "kept"
+    assert [path.name for path in tmp_path.iterdir()] == ["cobra"]
 
 
 def test_a_rejected_profile_is_a_result_and_not_an_exception() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from des_cli.errors import ExitCode, FileAccessError
 from des_cli.runs_out import lock
-from des_cli.runs_out.lock import locked, short_stem
+from des_cli.runs_out.lock import clear_lock, locked, short_stem
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="nothing is locked on Windows")
 
@@ -68,6 +68,22 @@ def test_the_dead_hold_nothing_and_their_lock_is_cleared_away(
     with locked(target):
         assert (tmp_path / ".run.lock").read_text() == f"{os.getpid()}\n"
     assert list(tmp_path.iterdir()) == []
+
+
+def test_only_what_nobody_holds_is_cleared(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    target, file = tmp_path / "run", tmp_path / ".run.lock"
+    with held_elsewhere(target, python_environment) as first:
+        clear_lock(target)
+        assert file.is_file()
+        first.send_signal(signal.SIGKILL)
+        first.wait()
+    clear_lock(target)
+    assert list(tmp_path.iterdir()) == []
+    file.mkdir()  # not of a lock
+    clear_lock(target)
+    assert file.is_dir()
 
 
 def test_a_link_to_a_folder_is_the_folder(tmp_path: Path) -> None:
