@@ -116,10 +116,14 @@ def read_manifest(folder: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def _may_exist(path: Path) -> bool:
+    # Path.exists() says no to a folder without permission from Python 3.14 on.
     try:
-        return path.exists()
-    except PermissionError:  # of its folder
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    except OSError:
         return True
+    return True
 
 
 def read_bytes(path: Path) -> bytes:
