@@ -58,4 +58,4 @@ def synthetic_run() -> Callable[..., Run]:
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """No figures, for tests that look at the words only."""
-    monkeypatch.setattr(section, "draw_plots", lambda trajectory, metrics: {})
+    monkeypatch.setattr(section, "draw_plots", lambda trajectory, metrics, drawn: {})

@@ -9,15 +9,17 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import stat
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from des_cli import __version__
 from des_cli.errors import Complaint, FileAccessError, UnreadableError
 from des_cli.model.arrays import Floats
 from des_cli.model.run import Run
@@ -46,6 +48,7 @@ COMMANDS = "commands.csv"
 TRAJECTORY = "trajectory.parquet"
 PROFILE = "profile.yaml"
 METRICS = "metrics.json"
+_FIGURE = re.compile(r"plots/(\w+)\.png")
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,8 @@ class StoredRun:
         The content of ``manifest.json``.
     commands : bytes
         The command table, not read.
+    figures : dict of str to bytes
+        PNGs by their names, where this version of the tool has drawn them.
     """
 
     name: str
@@ -73,6 +78,7 @@ class StoredRun:
     trajectory: dict[str, Floats]
     manifest: dict[str, Any]
     commands: bytes = b""
+    figures: dict[str, bytes] = field(default_factory=dict)
 
 
 def write_run(
@@ -144,6 +150,8 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
     complaints: list[Complaint] = []
     unreadable: list[Complaint] = []
     content: dict[str, bytes] = {}
+    figures: dict[str, bytes] = {}
+    own = isinstance(tool := manifest.get("tool"), dict) and tool.get("version") == __version__
     for entry in manifest["files"]:
         path = home / entry["name"]
         try:
@@ -159,6 +167,8 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
             complaints.append(Complaint(str(path), what))
         if entry["name"] in (COMMANDS, METRICS, TRAJECTORY):
             content[entry["name"]] = data
+        elif own and (figure := _FIGURE.fullmatch(entry["name"])):
+            figures[figure[1]] = data
     listed = {entry["name"] for entry in manifest["files"]}
     complaints += [
         Complaint(str(home / MANIFEST), f"does not list {name}")
@@ -176,6 +186,7 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
         trajectory=_read_trajectory(home / TRAJECTORY, content[TRAJECTORY]),
         manifest=manifest,
         commands=content[COMMANDS],
+        figures=figures,
     )
 
 

@@ -84,7 +84,7 @@ def run_section(run: StoredRun, metrics: Metrics, label: str, number_of_run: int
     """
     pictures = [
         Picture(name, CAPTIONS[name], base64.b64encode(png).decode("ascii"))
-        for name, png in draw_plots(run.trajectory, run.metrics).items()
+        for name, png in draw_plots(run.trajectory, run.metrics, run.figures).items()
     ]
     return Section(
         anchor=f"run-{number_of_run}",

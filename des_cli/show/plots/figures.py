@@ -9,6 +9,7 @@ from the nearest one that it can; the figures show the profile's own.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -47,6 +48,8 @@ CAPTIONS: Mapping[str, str] = {
 }
 """A sentence for each figure, in the order of a report."""
 
+NOTHING_DRAWN: Mapping[str, bytes] = MappingProxyType({})
+
 # Ordinates are at least this high, whatever the noise: a thousandth of what
 # the machine does in earnest.
 _FLOOR = {"rpm": 0.01, "deg": 0.01, "rad/s²": 2e-3, "p": 0.02}
@@ -60,7 +63,9 @@ _IN_AXES = [
 ]
 
 
-def draw_plots(trajectory: Columns, content: Mapping[str, Any]) -> dict[str, bytes]:
+def draw_plots(
+    trajectory: Columns, content: Mapping[str, Any], drawn: Mapping[str, bytes] = NOTHING_DRAWN
+) -> dict[str, bytes]:
     """Draw all figures of a run.
 
     Parameters
@@ -69,6 +74,8 @@ def draw_plots(trajectory: Columns, content: Mapping[str, Any]) -> dict[str, byt
         The columns of ``trajectory.parquet``.
     content : mapping
         Of ``metrics.json``.
+    drawn : mapping of str to bytes
+        Figures of this very run that need not be drawn again.
 
     Returns
     -------
@@ -95,6 +102,9 @@ def draw_plots(trajectory: Columns, content: Mapping[str, Any]) -> dict[str, byt
     pictures = {}
     with style():
         for name, draw_figure in figures.items():
+            if name in drawn:
+                pictures[name] = drawn[name]
+                continue
             figure, title = draw_figure(trajectory, metrics)
             if status:
                 stamp(figure, status)
