@@ -84,6 +84,10 @@ START_GAP, WARM_GAP = 3.0, 1e-2
 ROOM = 1e-4
 """Share of each budget that is left to the table, which is a little other than the spline."""
 
+PEAK_ROOM = 2e-3
+"""The same of a budget on a peak, which the spline may have between the points at which it is
+bounded, and a table at its rows."""
+
 SETTLINGS, GENEROUS = 10, 4
 """Solutions with adapted budgets until the table keeps them, and after how many of them
 a table need not spend them any more."""
@@ -166,7 +170,10 @@ class _Search:
         energy = cross_coupling(self.task, finest.grid)
         if energy <= FAINT * finest.grid.duration:
             return self.answers.passed_through(desired)
-        budgets = tuple(replace(b, most=b.most * (1.0 - ROOM)) for b in self.task.reduction.budget)
+        budgets = tuple(
+            replace(b, most=b.most * (1.0 - (PEAK_ROOM if b.metric in PEAK_METRICS else ROOM)))
+            for b in self.task.reduction.budget
+        )
         outcome: Outcome | None = None
         x = start = np.zeros(0)
         for level, fit in enumerate(fits):
