@@ -94,8 +94,8 @@ def find_directions(claim: Claim) -> list[Direction]:
             windows = [w for run in runs for w in _windows(t, run, share)]
             windows.sort(key=lambda w: t[w[0]] - t[w[1]])
             found += [_direction(t, j, "bump", *window) for window in windows[:EACH]]
-        at_start = [w for run in runs for w in _windows(t, run, SHARES[0]) if w[0] == 0][:1]
-        at_end = [w for run in runs for w in _windows(t, run, SHARES[0]) if w[1] == last][-1:]
+        at_start = [w for run in runs for w in _windows(t, run, SHARES[0]) if w[0] == 0]
+        at_end = [w for run in runs for w in _windows(t, run, SHARES[0]) if w[1] == last]
         for window in at_start:
             if reduction.ends == "free":
                 found.append(_direction(t, j, "leave", *window))
@@ -185,13 +185,10 @@ def _at_samples(states: Flags) -> Flags:
 
 def _guarded(t: Floats, free: Flags) -> Flags:
     """Take away what is too near to a sample that is held."""
+    guard = max(GUARD, 2.0 * float(np.max(np.diff(t))))
     for joint in range(free.shape[1]):
-        held = np.flatnonzero(~free[:, joint])
-        if len(held):
-            guard = max(GUARD, 2.0 * float(np.max(np.diff(t))))
-            near = np.searchsorted(t[held], t - guard, side="left")
-            after = t[held][np.minimum(near, len(held) - 1)]
-            free[:, joint] &= (near == len(held)) | (after > t + guard)
+        held = np.append(t[~free[:, joint]], np.inf)
+        free[:, joint] &= held[np.searchsorted(held, t - guard)] > t + guard
     return free
 
 
@@ -205,11 +202,12 @@ def _runs(free: Flags) -> Iterator[tuple[int, int]]:
 def _windows(t: Floats, run: tuple[int, int], share: float) -> Iterator[tuple[int, int]]:
     """Yield windows inside a stretch: its whole length, or evenly spread over it."""
     first, last = run
-    span, length = float(t[last] - t[first]), share * float(t[-1] - t[0])
-    length = min(span, max(length, SHORTEST))
-    count = 1 if span <= 1.2 * length else max(2, min(EACH, int(1.5 * span / length)))
+    span, length = float(t[last] - t[first]), max(share * float(t[-1] - t[0]), SHORTEST)
+    count = min(EACH, max(1, int(1.5 * span / length)))
+    if count == 1:
+        length = span
+    middles = 0.5 * (t[1:] + t[:-1])
     for at in np.linspace(0.0, span - length, count):
-        begin = int(np.searchsorted(t, t[first] + at - 1e-9))
-        end = int(np.searchsorted(t, t[first] + at + length + 1e-9)) - 1
+        begin, end = np.searchsorted(middles, t[first] + np.array([at, at + length])).tolist()
         if end - begin >= FEWEST and t[end] - t[begin] >= 0.99 * SHORTEST:
             yield begin, end
