@@ -182,13 +182,16 @@ def _along(state: State, phases: tuple[tuple[float, float], ...]) -> Reach:
     """Return what is passed through in phases of constant jerk."""
     reach = Reach(state.angle, state.angle, abs(state.rate))
     for time, jerk in phases:
-        turns = [t for t in _roots(jerk / 2.0, state.acceleration, state.rate) if 0.0 < t < time]
-        if jerk and 0.0 < (crest := -state.acceleration / jerk) < time:
-            turns.append(crest)
+        # A constant acceleration is held while the rate falls, and turns nothing.
+        turns = (
+            (*_roots(jerk / 2.0, state.acceleration, state.rate), -state.acceleration / jerk)
+            if jerk
+            else ()
+        )
         for t in (*turns, time):
-            at = state.after(t, jerk)
+            at = state.after(min(max(t, 0.0), time), jerk)
             reach = reach.joined(Reach(at.angle, at.angle, abs(at.rate)))
-        state = state.after(time, jerk)
+        state = at
     return reach
 
 
@@ -211,9 +214,7 @@ def _time_to_turn(state: State, limit: JointLimits) -> float:
 
 
 def _roots(a: float, b: float, c: float) -> tuple[float, ...]:
-    """Return the real roots of ``a t^2 + b t + c``, without cancellation."""
-    if a == 0.0:
-        return (-c / b,) if b else ()
+    """Return the real roots of ``a t^2 + b t + c``, a not zero, without cancellation."""
     inside = b * b - 4.0 * a * c
     if inside < 0.0:
         return ()
