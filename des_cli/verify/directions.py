@@ -202,7 +202,7 @@ def _runs(free: Flags) -> Iterator[tuple[int, int]]:
 def _windows(t: Floats, run: tuple[int, int], share: float) -> Iterator[tuple[int, int]]:
     """Yield windows inside a stretch: its whole length, or evenly spread over it."""
     first, last = run
-    span, length = float(t[last] - t[first]), max(share * float(t[-1] - t[0]), SHORTEST)
+    span, length = float(t[last] - t[first]), max(share * float(np.ptp(t)), SHORTEST)
     count = min(EACH, max(1, int(1.5 * span / length)))
     if count == 1:
         length = span
