@@ -11,6 +11,7 @@ from des_cli.batch.job import Job, JobResult, Output, TableFormat
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import VERBOSE, Console
+from des_cli.cli.grid_option import read_grid
 from des_cli.cli.options import (
     DEFAULT_RUNS,
     TABLE_FORMATS,
@@ -41,6 +42,7 @@ Examples:
   des-coriolis reduce my.yaml --control per-joint -o my-run
   des-coriolis reduce log.csv --column t_s=time -o commands.csv
   des-coriolis reduce profiles/*.yaml --jobs 4 --keep-going
+  des-coriolis reduce cobra_felt --grid budget.seat_g_rms_error_g=0.02,0.05,0.1
 """,
 )
 @profile_argument
@@ -68,6 +70,13 @@ Examples:
     show_default=True,
     help="Profiles at a time; 0 is one for each CPU.",
 )
+@click.option(
+    "--grid",
+    metavar="KEY=V,V...",
+    multiple=True,
+    help="Reduce each profile with each of these values of a key, such as r2=0.2,1; repeatable: "
+    "with every combination.",
+)
 @fail_on_option
 @click.option("--keep-going", is_flag=True, help="Go on with the others after one has failed.")
 @click.option("--resume", is_flag=True, help="Keep finished runs of the very same profile.")
@@ -88,6 +97,7 @@ def reduce(
     out: str | None,
     table_format: str | None,
     jobs: int,
+    grid: tuple[str, ...],
     fail_on: frozenset[str],
     keep_going: bool,
     resume: bool,
@@ -103,7 +113,8 @@ def reduce(
     exists. Options that name a key of the profile's "reduction:" override it,
     and --set.
     """
-    form = _table_format(out, table_format, several=len(profiles) > 1)
+    several = len(profiles) > 1 or bool(grid)
+    form = _table_format(out, table_format, several=several)
     if form is not None and resume:
         raise click.UsageError("--resume needs run folders: a table does not tell its profile.")
     if out == STANDARD_STREAM and not dry_run:
@@ -111,18 +122,19 @@ def reduce(
     stdin = read_stdin(profiles, caps)
     output = Output(
         out=DEFAULT_RUNS if out is None else out,
-        out_is_parent=out is None or len(profiles) > 1,
+        out_is_parent=out is None or several,
         table_format=form,
         plots=not no_plots,
         overwrite=overwrite,
         resume=resume,
         dry_run=dry_run,
     )
+    every = (*settings, *reduction_settings(reduction))
     batch = [
         Job(
             source_of(
                 name,
-                (*settings, *reduction_settings(reduction)),
+                every,
                 machine=machine,
                 stdin=stdin,
                 columns=columns,
@@ -135,19 +147,30 @@ def reduce(
         )
         for name in profiles
     ]
-    return _run(console, _with_parts(batch), jobs, keep_going)
+    return _run(console, _all_jobs(batch, grid), jobs, keep_going)
 
 
-def _with_parts(batch: list[Job]) -> list[Job]:
-    """Return a job for each stretch of a record that is split at its gaps."""
+def _all_jobs(batch: list[Job], grid: tuple[str, ...]) -> list[Job]:
+    """Return a job for each point of the grid, and of these for each stretch between gaps."""
     from des_cli.batch.job import split_jobs
     from des_cli.batch.pool import single_blas_thread
 
     with single_blas_thread():  # numpy may be imported here
-        parts = split_jobs(batch)
+        parts = split_jobs(_with_grid(batch, grid))
     if len(parts) > 1 and parts[0].output.table_format is not None:
         _refuse_one_table()
     return parts
+
+
+def _with_grid(batch: list[Job], grid: tuple[str, ...]) -> list[Job]:
+    if not grid:
+        return batch
+    from des_cli.batch.grid import grid_jobs
+    from des_cli.batch.source import require_distinct_names
+
+    axes = read_grid(grid, batch[0].source.settings)
+    require_distinct_names(job.source for job in batch)
+    return grid_jobs(batch, axes)
 
 
 def _run(console: Console, batch: list[Job], jobs: int, keep_going: bool) -> ExitCode:
