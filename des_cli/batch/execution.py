@@ -52,10 +52,12 @@ def run_job(
     target = output.destination(read.name)
 
     def whole() -> JobResult:
-        if output.resume and _holds_run_of(target, read):
+        if output.resume and (kept := _metrics_of_run(target, read)):
             if not output.dry_run:
                 _clear_traces(target)
-            return JobResult(source.name, read.name, written=str(target), state="kept")
+            return JobResult(
+                source.name, read.name, metrics=kept, written=str(target), state="kept"
+            )
         _refuse_place(output, target)
         if output.dry_run:
             _refuse_existing(output, target)
@@ -220,18 +222,20 @@ def _refuse_existing(output: Output, target: Path) -> None:
     raise FileAccessError([Complaint(str(target), what)])
 
 
-def _holds_run_of(folder: Path, profile: Profile) -> bool:
+def _metrics_of_run(folder: Path, profile: Profile) -> dict[str, Any] | None:
+    """Return the metrics of a finished run of this very profile, None where there is none."""
     from des_cli.results.reading import read_metrics
     from des_cli.runs_out.manifest import is_run
     from des_cli.runs_out.run_folder import read_run
 
     if not is_run(folder):
-        return False
+        return None
     try:
-        stored = read_metrics(read_run(folder).metrics).profile
+        metrics = read_run(folder).metrics
     except (DesError, OSError):
-        return False
-    return bool(profile.sha256) and stored.sha256 == profile.sha256
+        return None
+    same = bool(profile.sha256) and read_metrics(metrics).profile.sha256 == profile.sha256
+    return metrics if same else None
 
 
 def _clear_traces(target: Path) -> None:

@@ -96,6 +96,12 @@ class Console:
         except (OSError, ValueError):
             give_up(sys.stderr)
 
+    @property
+    def has_line(self) -> bool:
+        """Whether a line tells what is being done: on a terminal, and unless quiet."""
+        allowed = self.verbosity > QUIET and os.environ.get("TERM") != "dumb"
+        return allowed and sys.stderr is not None and sys.stderr.isatty()
+
     @contextmanager
     def working(self, total: int = 1, noun: str = "profiles") -> Iterator[StatusLine]:
         """Offer a line that tells what is being done, on a terminal and unless quiet.
@@ -107,9 +113,8 @@ class Console:
         noun : str
             What they are, in the plural.
         """
-        allowed = self.verbosity > QUIET and os.environ.get("TERM") != "dumb"
-        terminal = allowed and sys.stderr is not None and sys.stderr.isatty()
-        with StatusLine(sys.stderr if terminal else None, total=total, noun=noun) as self._line:
+        stream = sys.stderr if self.has_line else None
+        with StatusLine(stream, total=total, noun=noun) as self._line:
             yield self._line
 
     def follow(self, line: StatusLine, *, log: bool) -> Callable[[Iteration], None]:

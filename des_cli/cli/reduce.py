@@ -7,11 +7,10 @@ from typing import Any, NoReturn, cast
 
 import click
 
-from des_cli.batch.job import Job, JobResult, Output, TableFormat
+from des_cli.batch.job import Job, Output, TableFormat
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.common_options import verbosity_options
-from des_cli.cli.console import VERBOSE, Console
-from des_cli.cli.grid_option import read_grid
+from des_cli.cli.console import Console
 from des_cli.cli.options import (
     DEFAULT_RUNS,
     TABLE_FORMATS,
@@ -20,6 +19,7 @@ from des_cli.cli.options import (
     reduction_options,
     reduction_settings,
 )
+from des_cli.cli.reduce_batch import all_jobs, run_batch
 from des_cli.cli.source_options import (
     machine_option,
     profile_argument,
@@ -27,8 +27,7 @@ from des_cli.cli.source_options import (
     setting_options,
     source_of,
 )
-from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
-from des_cli.cli.summary import exit_code_of, print_closing, print_result
+from des_cli.cli.stdout import refuse_binary_on_terminal
 from des_cli.errors import ExitCode
 from des_cli.profiles_in.caps import Caps
 from des_cli.profiles_in.setting import AnySetting
@@ -147,70 +146,10 @@ def reduce(
         )
         for name in profiles
     ]
-    return _run(console, _all_jobs(batch, grid), jobs, keep_going)
-
-
-def _all_jobs(batch: list[Job], grid: tuple[str, ...]) -> list[Job]:
-    """Return a job for each point of the grid, and of these for each stretch between gaps."""
-    from des_cli.batch.job import split_jobs
-    from des_cli.batch.pool import single_blas_thread
-
-    with single_blas_thread():  # numpy may be imported here
-        parts = split_jobs(_with_grid(batch, grid))
-    if len(parts) > 1 and parts[0].output.table_format is not None:
+    parts = all_jobs(batch, grid)
+    if len(parts) > 1 and form is not None:
         _refuse_one_table()
-    return parts
-
-
-def _with_grid(batch: list[Job], grid: tuple[str, ...]) -> list[Job]:
-    if not grid:
-        return batch
-    from des_cli.batch.grid import grid_jobs
-    from des_cli.batch.source import require_distinct_names
-
-    axes = read_grid(grid, batch[0].source.settings)
-    require_distinct_names(job.source for job in batch)
-    return grid_jobs(batch, axes)
-
-
-def _run(console: Console, batch: list[Job], jobs: int, keep_going: bool) -> ExitCode:
-    from des_cli.batch.execution import run_job
-    from des_cli.batch.pool import local_executor
-    from des_cli.batch.runner import run_tasks
-    from des_cli.batch.source import require_distinct_names
-
-    workers = min(jobs, len(batch)) if jobs else jobs
-    alone = len(batch) == 1
-    results = []
-    with (
-        local_executor(1 if alone else workers) as executor,
-        console.working(len(batch)) as line,
-    ):
-        if not alone:
-            require_distinct_names(job.source for job in batch)
-        live = executor is None and console.verbosity >= VERBOSE
-        for result in run_tasks(
-            batch,
-            run_job,
-            JobResult.failed,
-            executor,
-            keep_going=keep_going,
-            on_iteration=console.follow(line, log=live),
-            on_stage=line.stage,
-            on_finished=line.advance,
-        ):
-            if console.verbosity >= VERBOSE and not live:
-                for iteration in result.log:
-                    console.iteration(iteration)
-            console.end_log()
-            results.append(result)
-            print_result(console, result, alone=alone)
-            if result.table is not None:
-                with console.aside():
-                    write_data(result.table)
-    if not alone:
-        print_closing(console, results, len(batch))
-    return exit_code_of(results, len(batch))
+    return run_batch(console, parts, jobs, keep_going)
 
 
 def _refuse_one_table() -> NoReturn:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TextIO
@@ -25,6 +26,11 @@ DELAY_S = 1.0
 
 INTERVAL_S = 0.1
 """Time between two drawings at the least, and of the thread's."""
+
+_ENDS = 32
+"""Of so many tasks, at the most, the pace is taken: those that were done before took no time."""
+
+_MINUTE, _HOUR, _DAY = 60.0, 3600.0, 86400.0
 
 _ERASE = "\r\x1b[K"
 _NARROW = 80
@@ -57,6 +63,7 @@ class StatusLine:
         self._stream, self._total, self._noun, self._clock = stream, total, noun, clock
         self._stage, self._step, self._done = "", -1, 0
         self._began, self._drawn = clock(), -float("inf")
+        self._ends = deque([self._began], maxlen=_ENDS + 1)
         self._shown = False
         # whoever draws, erases or prints beside it holds it
         self._lock = threading.RLock()
@@ -66,6 +73,7 @@ class StatusLine:
     def __enter__(self) -> StatusLine:
         """Begin to count the seconds."""
         self._began = self._clock()
+        self._ends[0] = self._began
         if self._stream is not None:
             self._thread.start()
         return self
@@ -99,6 +107,7 @@ class StatusLine:
         """Count one more that is done."""
         with self._lock:
             self._done += 1
+            self._ends.append(self._clock())
             self._stage, self._step = "", -1
             self._draw()
 
@@ -133,7 +142,19 @@ class StatusLine:
             parts.append(self._stage)
         if self._step >= 0:
             parts.append(f"step {self._step}")
-        return f"  {', '.join([*parts, f'{now - self._began:.0f} s'])}"
+        parts.append(f"{now - self._began:.0f} s")
+        if left := self._left(now):
+            parts.append(f"about {left} left")
+        return f"  {', '.join(parts)}"
+
+    def _left(self, now: float) -> str:
+        """Say how long the rest takes at the pace of what was done last, if that is known."""
+        rest = self._total - self._done
+        if not self._done or not rest:
+            return ""
+        pace = (self._ends[-1] - self._ends[0]) / (len(self._ends) - 1)
+        seconds = self._ends[-1] + pace * rest - now
+        return duration_words(seconds) if seconds >= 1.0 else ""
 
     def _write(self, text: str) -> None:
         """Write at once; a terminal that went away is no reason to stop working."""
@@ -141,6 +162,18 @@ class StatusLine:
             with suppress(OSError, ValueError):
                 self._stream.write(text)
                 self._stream.flush()
+
+
+def duration_words(seconds: float) -> str:
+    """Say a duration in one unit, of which there are at least two.
+
+    >>> [duration_words(seconds) for seconds in (2.4, 119, 121, 7100, 9000, 200_000)]
+    ['2 s', '119 s', '2 min', '118 min', '2 h', '2 days']
+    """
+    for unit, word in ((_DAY, "days"), (_HOUR, "h"), (_MINUTE, "min")):
+        if seconds >= 2.0 * unit:
+            return f"{seconds / unit:.0f} {word}"
+    return f"{seconds:.0f} s"
 
 
 def _columns(stream: TextIO) -> int:

@@ -9,7 +9,7 @@ from des_cli.cli.summary_rows import (
     limits_used,
     summary_rows,
 )
-from des_cli.errors import ExitCode, Failure
+from des_cli.errors import Failure
 from des_cli.model.metric import SEAT_G_ERROR, SEAT_RATE_DEVIATION
 from des_cli.model.metrics import Metrics
 from des_cli.results.reading import read_metrics
@@ -19,7 +19,9 @@ from des_cli.show.words import CONSOLE, steps_taken, told_parts
 _LABEL_WIDTH = 14
 
 
-def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
+def print_result(
+    console: Console, result: JobResult, *, alone: bool, counted: bool = False
+) -> None:
     """Print how one job ended.
 
     Parameters
@@ -29,6 +31,9 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
     alone : bool
         Whether it is the only one: then in full, otherwise on one line, with
         everything that needs attention below it.
+    counted : bool
+        Whether a status line counts the jobs and a table follows: then a job of several
+        has its line only if something is to be told below it.
     """
     if result.exit_code:
         failure = Failure(result.exit_code, result.complaints, result.traceback)
@@ -37,7 +42,8 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
         console.warn(each.text for each in result.notices if each.text not in refused)
         return
     if result.state != "reduced" or result.metrics is None:
-        console.say(_idle_line(console, result))
+        if not counted or result.state == "planned":
+            console.say(_idle_line(console, result))
         return
     metrics = read_metrics(result.metrics)
     if alone:
@@ -45,7 +51,7 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
             console.say(line)
         for label, text in summary_rows(metrics, result.objective):
             console.say(f"  {label:<{_LABEL_WIDTH}} {text}")
-    else:
+    elif not counted or result.violations or result.notices:
         console.say(_reduced_line(console, result, metrics))
     label = f"  {'limits':<{_LABEL_WIDTH}} "
     whose = "" if alone else f"{result.name}: "
@@ -61,28 +67,6 @@ def print_result(console: Console, result: JobResult, *, alone: bool) -> None:
             console.say(console.style(line, "warning"))
     if alone and result.table is None:
         console.say(f"  {'written':<{_LABEL_WIDTH}} {console.style(result.written, 'good')}")
-
-
-def print_closing(console: Console, results: list[JobResult], planned: int) -> None:
-    """Print how a batch ended, in one line."""
-    failed = sum(bool(result.exit_code) for result in results)
-    kept = sum(result.state == "kept" for result in results)
-    dry = sum(result.state == "planned" for result in results)
-    missing = planned - len(results)
-    parts = [
-        f"{count} {what}"
-        for count, what in (
-            (len(results) - failed - kept - dry, "done"),
-            (dry, "would be done"),
-            (kept, "already done"),
-            (failed, "failed"),
-            (missing, "not run"),
-        )
-        if count
-    ]
-    hint = " (--keep-going runs them all)" if missing else ""
-    text = f"{planned} profiles: {', '.join(parts)}{hint}"
-    console.say(console.style(text, "error" if failed else "good"))
 
 
 def _headlines(console: Console, profile: str, metrics: Metrics) -> list[str]:
@@ -124,11 +108,3 @@ def _reduced_line(console: Console, result: JobResult, metrics: Metrics) -> str:
 
 def _column(console: Console, result: JobResult) -> str:
     return console.style(f"{result.name:<20}", "title")
-
-
-def exit_code_of(results: list[JobResult], planned: int) -> ExitCode:
-    """Return the exit code of a whole batch: of a single profile, its own."""
-    if planned == 1:
-        return results[0].exit_code
-    done = len(results) == planned and not any(result.exit_code for result in results)
-    return ExitCode.DONE if done else ExitCode.FILE

@@ -6,24 +6,19 @@ without a solution has no numbers. Doubles read back exactly here too.
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
 from des_cli.model.tradeoff import TradePoint
+from des_cli.runs_out.mixed_csv import encode_mixed_csv
 from des_cli.runs_out.tables import TableFormat
 
 COLUMNS = tuple(field.name for field in fields(TradePoint))
 """Names of the columns, in their order."""
 
 _WORDS = ("algorithm", "control", "swept", "status", "message")
-
-
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""How a text begins that a spreadsheet would compute; numbers are written as they are."""
 
 
 def encode_points(points: Sequence[TradePoint], format: TableFormat) -> bytes:
@@ -38,31 +33,13 @@ def encode_points(points: Sequence[TradePoint], format: TableFormat) -> bytes:
     """
     rows = [asdict(point) for point in points]
     if format == "csv":
-        return _csv(rows)
+        return encode_mixed_csv(COLUMNS, rows)
     if format == "parquet":
         return _parquet(rows)
     lines = [json.dumps(row, allow_nan=False, ensure_ascii=False) for row in rows]
     if format == "json":
         return ("[\n" + ",\n".join(lines) + "\n]\n").encode()
     return "".join(line + "\n" for line in lines).encode()
-
-
-def _csv(rows: Sequence[dict[str, Any]]) -> bytes:
-    stream = io.StringIO(newline="")
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows([_cell(row[name]) for name in COLUMNS] for row in rows)
-    return stream.getvalue().encode()
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return f"'{value}" if value.startswith(_FORMULA) else value
-    return float.__repr__(value) if isinstance(value, float) else str(value)
 
 
 def _parquet(rows: Sequence[dict[str, Any]]) -> bytes:

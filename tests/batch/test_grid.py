@@ -16,8 +16,8 @@ WEIGHTS = Axis("reduction.r2", (1, 2.5))
 
 
 def test_each_profile_takes_every_combination_and_the_last_axis_varies_fastest() -> None:
-    jobs = grid_jobs([Job(Source("cobra")), Job(Source("spike"))], [SECONDS, WEIGHTS])
-    assert [job.source.name for job in jobs] == ["cobra"] * 4 + ["spike"] * 4
+    jobs = grid_jobs([Job(Source("cobra")), Job(Source("cobra_felt"))], [SECONDS, WEIGHTS])
+    assert [job.source.name for job in jobs] == ["cobra"] * 4 + ["cobra_felt"] * 4
     profiles = [load_source(job.source) for job in jobs[:4]]
     assert [profile.name for profile in profiles] == [
         "cobra__step_s_0.25__r2_1",

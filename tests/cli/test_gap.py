@@ -26,7 +26,11 @@ def test_without_a_word_a_long_gap_is_refused(invoke, log: str) -> None:
 def test_split_makes_a_run_of_each_stretch(invoke, log: str, tmp_path: Path) -> None:
     result = invoke("reduce", log, "--gap", "split", "-o", "all", "--no-plots", "--limits", "warn")
     assert result.exit_code == 0, result.stderr
-    assert sorted(path.name for path in (tmp_path / "all").iterdir()) == ["log-1", "log-2"]
+    assert sorted(path.name for path in (tmp_path / "all").iterdir()) == [
+        "log-1",
+        "log-2",
+        "summary.csv",
+    ]
     metrics = json.loads((tmp_path / "all/log-2/metrics.json").read_text())
     assert metrics["profile"]["samples"] == 11
     assert metrics["notices"][0].startswith("part 2 of 2 between gaps: lines 13 to 23")

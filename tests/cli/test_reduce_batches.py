@@ -1,15 +1,23 @@
 """``reduce`` with several profiles, and again."""
 
+import csv
+from pathlib import Path
+
 import pytest
 
 from tests.support.run_files import RUN_FILES, replace_file
+
+
+def summary_of(folder: Path) -> list[dict[str, str]]:
+    with open(folder / "summary.csv", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def test_several_profiles_have_a_folder_each(invoke, write_profile, tmp_path) -> None:
     files = [write_profile(name).name for name in ("one", "two")]
     result = invoke("reduce", *files, "--no-plots", "-o", "all")
     assert (result.exit_code, result.stdout) == (0, "")
-    assert {path.name for path in (tmp_path / "all").iterdir()} == {"one", "two"}
+    assert {path.name for path in (tmp_path / "all").iterdir()} == {"one", "two", "summary.csv"}
     assert result.stderr.splitlines()[-1] == "2 profiles: 2 done"
 
 
@@ -36,7 +44,14 @@ def test_keep_going_runs_the_others(invoke, write_profile, tmp_path, jobs: str) 
         "last",
     ]
     assert lines[-1] == "3 profiles: 2 done, 1 failed"
-    assert {path.name for path in (tmp_path / "runs").iterdir()} == {"first", "last"}
+    assert {path.name for path in (tmp_path / "runs").iterdir()} == {"first", "last", "summary.csv"}
+    rows = summary_of(tmp_path / "runs")
+    assert [(row["folder"], row["state"], row["exit_code"]) for row in rows] == [
+        ("first", "reduced", "0"),
+        ("", "failed", "3"),
+        ("last", "reduced", "0"),
+    ]
+    assert "bad.yaml" in rows[1]["message"]
 
 
 @pytest.mark.slow
@@ -49,6 +64,8 @@ def test_the_number_of_jobs_does_not_change_a_byte(command, write_profile, tmp_p
         for file in RUN_FILES:
             single = (tmp_path / "by1" / name / file).read_bytes()
             assert single == (tmp_path / "by2" / name / file).read_bytes()
+    by1, by2 = ((tmp_path / f"by{jobs}" / "summary.csv").read_bytes() for jobs in (1, 2))
+    assert by1 == by2
 
 
 def test_two_profiles_of_one_name_are_refused_before_anything_runs(
@@ -71,6 +88,13 @@ def test_resume_keeps_a_finished_run_and_refuses_another(invoke, write_profile, 
     assert result.exit_code == 0
     assert result.stderr.splitlines()[-1] == "2 profiles: 1 done, 1 already done"
     assert table.stat().st_mtime_ns == before
+    kept, done = summary_of(tmp_path / "runs")
+    assert (kept.pop("state"), done.pop("state")) == ("kept", "reduced")
+    assert set(kept) == set(done)
+    own = ("source", "name", "folder")
+    assert {key: kept[key] for key in kept if key not in own} == {
+        key: done[key] for key in done if key not in own
+    }
     result = invoke("reduce", files[0], "--no-plots", "--resume", "--r2", "8")
     assert result.exit_code == 1
     assert "very same profile" in result.stderr or "of this very profile" in result.stderr
@@ -95,3 +119,19 @@ def test_resume_takes_no_odd_metrics_for_those_of_the_profile(
         assert result.stderr.splitlines()[-1].endswith(
             "is not a finished run of this very profile; --overwrite replaces it"
         )
+
+
+def test_the_closing_table_has_a_line_a_run_and_a_dry_run_no_summary(
+    invoke, write_profile, tmp_path
+) -> None:
+    files = [write_profile("bad", fork_deg="sin(").name, write_profile("good").name]
+    assert invoke("reduce", *files, "--dry-run", "--keep-going").exit_code == 1
+    assert not (tmp_path / "runs").exists()
+    result = invoke("reduce", *files, "--no-plots", "--keep-going")
+    head, bad, good, _ = result.stderr.splitlines()[-4:]
+    assert head.split()[:2] == ["profile", "status"]
+    assert (bad.split()[:2], bad.split()[-1]) == (["bad.yaml", "rejected"], "3")
+    assert (good.split()[:2], good.split()[-1]) == (["good", "converged"], "0")
+    quiet = invoke("-q", "reduce", *files, "--no-plots", "--keep-going", "--resume")
+    assert "status" not in quiet.stderr
+    assert [row["state"] for row in summary_of(tmp_path / "runs")] == ["failed", "kept"]

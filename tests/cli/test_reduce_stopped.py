@@ -86,7 +86,7 @@ def runs_in(out: Path) -> dict[str, dict[str, bytes]]:
         return {}
     found = {}
     for folder in sorted(out.iterdir()):
-        if not folder.name.startswith("."):
+        if folder.is_dir() and not folder.name.startswith("."):
             read_run(folder)
             found[folder.name] = tree(folder)
     return found

@@ -81,9 +81,29 @@ def test_of_several_it_counts_those_that_are_done() -> None:
         clock.now += 1.0
         line.stage("desired motion")
     assert stream.getvalue().split(ERASE)[1:-1] == [
-        "  1 of 3 points done, 2 s",
-        "  1 of 3 points done, desired motion, 3 s",
+        "  1 of 3 points done, 2 s, about 4 s left",
+        "  1 of 3 points done, desired motion, 3 s, about 3 s left",
     ]
+
+
+@pytest.mark.usefixtures("still")
+def test_the_time_left_is_at_the_pace_of_what_was_done_last() -> None:
+    stream, clock = io.StringIO(), Clock()
+    with StatusLine(stream, total=200, clock=clock) as line:
+        for _ in range(100):  # kept by --resume
+            line.advance()
+        for _ in range(40):
+            clock.now += 10.0
+            line.advance()
+        clock.now += 1000.0
+        line.stage("overdue")
+        for _ in range(60):
+            clock.now += 1.0
+            line.advance()
+    drawn = stream.getvalue().split(ERASE)
+    assert "  140 of 200 profiles done, 400 s, about 10 min left" in drawn
+    assert "  140 of 200 profiles done, overdue, 1400 s" in drawn
+    assert "  200 of 200 profiles done, 1460 s" in drawn
 
 
 @pytest.mark.usefixtures("still")

@@ -4,7 +4,7 @@ import pytest
 
 from des_cli.batch.job import JobResult
 from des_cli.cli.console import Console
-from des_cli.cli.summary import exit_code_of, print_closing, print_result
+from des_cli.cli.summary import print_result
 from des_cli.errors import ExitCode
 from tests.support.summaries import result, with_change
 
@@ -72,16 +72,15 @@ def test_a_failed_result_prints_its_problems_alone(capsys: pytest.CaptureFixture
     assert capsys.readouterr().err == "c: infeasible\n"
 
 
-def test_closing_counts_every_profile_once(capsys: pytest.CaptureFixture[str]) -> None:
-    ends = [result(), result(state="kept"), result(exit_code=ExitCode.PROFILE, state="failed")]
-    print_closing(Console(), ends, 5)
-    words = "5 profiles: 1 done, 1 already done, 1 failed, 2 not run (--keep-going runs them all)\n"
-    assert capsys.readouterr().err == words
+def test_a_result_that_is_counted_has_a_line_only_with_something_below_it(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def lines(shown: JobResult) -> int:
+        print_result(Console(), shown, alone=False, counted=True)
+        return len(capsys.readouterr().err.splitlines())
 
-
-def test_exit_code_of_a_batch() -> None:
-    bad = result(exit_code=ExitCode.NO_SOLUTION, state="failed")
-    assert exit_code_of([bad], 1) == 4
-    assert exit_code_of([result(), bad], 2) == 1
-    assert exit_code_of([result()], 2) == 1
-    assert exit_code_of([result(), result()], 2) == 0
+    assert lines(result()) == 0
+    assert lines(result(state="kept")) == 0
+    assert lines(result(violations=("arm too fast",))) == 2
+    assert lines(result(state="planned")) == 1
+    assert lines(result(exit_code=ExitCode.PROFILE, complaints=("no",), state="failed")) == 1

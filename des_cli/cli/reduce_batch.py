@@ -1,0 +1,100 @@
+"""Many profiles for ``reduce``: the jobs that they make, run and told one after the other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from des_cli.batch.job import Job, JobResult
+from des_cli.cli.console import VERBOSE, Console
+from des_cli.cli.grid_option import read_grid
+from des_cli.cli.stdout import write_data
+from des_cli.cli.summary import print_result
+from des_cli.cli.summary_table import print_closing, print_table
+from des_cli.errors import ExitCode
+
+if TYPE_CHECKING:
+    from des_cli.batch.summary import SummaryRow
+
+
+def all_jobs(batch: list[Job], grid: tuple[str, ...]) -> list[Job]:
+    """Return a job for each point of the grid, and of these for each stretch between gaps."""
+    from des_cli.batch.job import split_jobs
+    from des_cli.batch.pool import single_blas_thread
+
+    with single_blas_thread():  # numpy may be imported here
+        return split_jobs(_with_grid(batch, grid))
+
+
+def _with_grid(batch: list[Job], grid: tuple[str, ...]) -> list[Job]:
+    if not grid:
+        return batch
+    from des_cli.batch.grid import grid_jobs
+    from des_cli.batch.source import require_distinct_names
+
+    axes = read_grid(grid, batch[0].source.settings)
+    require_distinct_names(job.source for job in batch)
+    return grid_jobs(batch, axes)
+
+
+def run_batch(console: Console, batch: list[Job], jobs: int, keep_going: bool) -> ExitCode:
+    """Reduce profiles, tell how each ended, and sum up several.
+
+    Parameters
+    ----------
+    console : Console
+    batch : list of Job
+    jobs : int
+        How many at a time; 0 is one for each CPU.
+    keep_going : bool
+        Whether to go on after one has failed.
+    """
+    from des_cli.batch.execution import run_job
+    from des_cli.batch.pool import local_executor
+    from des_cli.batch.runner import run_tasks
+    from des_cli.batch.source import require_distinct_names
+    from des_cli.batch.summary import SummaryRow, exit_code_of
+
+    workers = min(jobs, len(batch)) if jobs else jobs
+    alone = len(batch) == 1
+    rows: list[SummaryRow] = []
+    with (
+        local_executor(1 if alone else workers) as executor,
+        console.working(len(batch)) as line,
+    ):
+        if not alone:
+            require_distinct_names(job.source for job in batch)
+        counted = not alone and console.has_line and console.verbosity < VERBOSE
+        live = executor is None and console.verbosity >= VERBOSE
+        for result in run_tasks(
+            batch,
+            run_job,
+            JobResult.failed,
+            executor,
+            keep_going=keep_going,
+            on_iteration=console.follow(line, log=live),
+            on_stage=line.stage,
+            on_finished=line.advance,
+        ):
+            if console.verbosity >= VERBOSE and not live:
+                for iteration in result.log:
+                    console.iteration(iteration)
+            console.end_log()
+            rows.append(SummaryRow.of(result))
+            print_result(console, result, alone=alone, counted=counted)
+            if result.table is not None:
+                with console.aside():
+                    write_data(result.table)
+    if not alone:
+        _sum_up(console, batch, rows)
+    return exit_code_of(rows, len(batch))
+
+
+def _sum_up(console: Console, batch: list[Job], rows: list[SummaryRow]) -> None:
+    """Print the table of a batch, and write it beside its runs."""
+    from des_cli.batch.summary import write_summary
+
+    print_table(console, rows)
+    print_closing(console, rows, len(batch))
+    output = batch[0].output
+    if not output.dry_run:
+        write_summary(output.out, rows)
