@@ -182,6 +182,7 @@ def _load_csv(
             gaps=reading.gaps,
             remarks=reading.remarks,
             most_rows=reading.caps.rows,
+            machine=reading.machine,
         )
 
     document, findings = parse_settings(settings, reading.label)

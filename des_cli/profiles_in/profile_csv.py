@@ -8,6 +8,7 @@ import numpy as np
 
 from des_cli.errors import Complaint, ProfileError
 from des_cli.model.arrays import Floats
+from des_cli.model.machine import Machine
 from des_cli.model.profile import BodyRates, GCommand, JointCommands
 from des_cli.profiles_in.angles import sudden_steps, unwrap
 from des_cli.profiles_in.attitude import flown_attitude, rows_with_attitude, with_quaternions
@@ -21,7 +22,7 @@ from des_cli.profiles_in.g_commands import STEP, sampled_g
 from des_cli.profiles_in.g_schema import G_STEMS
 from des_cli.profiles_in.gaps import GapHandling, Place, find_short_steps, select_rows
 from des_cli.profiles_in.interpolant import body_rates_of_samples
-from des_cli.profiles_in.rates_of_positions import joint_commands_of_samples
+from des_cli.profiles_in.rates_of_positions import STEP_ACCELERATION, joint_commands_of_samples
 from des_cli.profiles_in.record_checks import check_magnitudes, check_times, tell_doubtful_units
 from des_cli.profiles_in.sample_times import sample_times
 from des_cli.profiles_in.wording import plain
@@ -44,6 +45,7 @@ def parse_samples(
     gaps: GapHandling | None = None,
     remarks: list[str] | None = None,
     most_rows: int = DEFAULT_CAPS.rows,
+    machine: Machine | None = None,
 ) -> tuple[Floats, JointCommands | BodyRates | GCommand]:
     """Read joint commands, body rates, an attitude or an asked G from the text of a CSV file.
 
@@ -66,6 +68,8 @@ def parse_samples(
         changed of the record.
     most_rows : int
         Of the file, and of what it is resampled to.
+    machine : Machine, optional
+        Whose joints' accelerations tell a step of a rate from a fast change.
 
     Returns
     -------
@@ -132,10 +136,19 @@ def parse_samples(
             by_stem["arm"],
             np.column_stack([by_stem["fork"], by_stem["cab"]]),
             arm_by_angle=arm.unit is not None and arm.unit.quantity == "angle",
+            fastest=_fastest(machine),
         )
     rates = np.column_stack([by_stem[stem] for stem in RATES])
     recorded = np.column_stack([by_stem[q] for q in QUATERNION]) if "q0" in by_stem else None
     return t, body_rates_of_samples(t, rates, recorded)
+
+
+def _fastest(machine: Machine | None) -> tuple[float, float]:
+    """Return the accelerations beyond which the rates of fork and cab step [rad/s^2]."""
+    if machine is None:
+        return STEP_ACCELERATION, STEP_ACCELERATION
+    _, fork, cab = (min(limit.acceleration, STEP_ACCELERATION) for limit in machine.limits)
+    return fork, cab
 
 
 def _read(

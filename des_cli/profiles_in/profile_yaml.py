@@ -71,6 +71,8 @@ class Reading:
         Takes sentences for the user on what was done to read it.
     caps : Caps
         The most that is read.
+    machine : Machine, optional
+        As soon as it is known.
     """
 
     label: str
@@ -80,6 +82,7 @@ class Reading:
     gaps: GapHandling = field(default_factory=GapHandling)
     remarks: list[str] = field(default_factory=list)
     caps: Caps = DEFAULT_CAPS
+    machine: Machine | None = None
 
     def referred(self, name: str, place: str) -> tuple[str, bytes]:
         """Return label and content of a file that the profile refers to.
@@ -186,6 +189,7 @@ def finish(
         machine = read_machine(document, reading, findings)
     except DesError as error:
         unread = error
+    reading.machine = machine
     reading.conditioning = read_conditioning(document, findings)
     reading.gaps.policy = document.gap
     try:
@@ -350,4 +354,5 @@ def _sampled(section: Any, reading: Reading, findings: Findings) -> Commands:
         gaps=reading.gaps,
         remarks=reading.remarks,
         most_rows=reading.caps.rows,
+        machine=reading.machine,
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from des_cli.model.arrays import Floats
@@ -12,12 +14,26 @@ LEAST_SAMPLES = 4
 
 ROUGHEST = 4.0
 """Total variation of the acceleration, relative to the three-point formula's, up to which
-positions count as those of a piecewise parabola. Noise, and a step of the rate, leave a
+positions count as those of a piecewise parabola. Noise, and a small step of the rate, leave a
 sawtooth in its rates that is far rougher."""
 
 
+STEP_ACCELERATION = 100.0
+"""Acceleration [rad/s^2] from row to row beyond which the rate of a joint without a limit steps:
+twenty times what the drives of a centrifuge do."""
+
+STEP_ALONE, ROWS_AROUND = 20.0, 8
+"""How many times the accelerations at so many rows before and after it that of a step is, at the
+least. Noise has others like it around it."""
+
+
 def joint_commands_of_samples(
-    t: Floats, arm: Floats, position: Floats, *, arm_by_angle: bool = False
+    t: Floats,
+    arm: Floats,
+    position: Floats,
+    *,
+    arm_by_angle: bool = False,
+    fastest: tuple[float, float] = (STEP_ACCELERATION, STEP_ACCELERATION),
 ) -> JointCommands:
     """Make commands of recorded joints.
 
@@ -31,12 +47,61 @@ def joint_commands_of_samples(
         Fork and cab angles [rad].
     arm_by_angle : bool
         Whether the arm is given by its angle.
+    fastest : (float, float)
+        Accelerations of fork and cab beyond which a rate steps [rad/s^2].
     """
-    rate = rates_of_positions(t, position)
+    sides = [rates_with_steps(t, *each) for each in zip(position.T, fastest, strict=True)]
+    start, end = (np.column_stack(each) for each in zip(*sides, strict=True))
     if not arm_by_angle:
-        return JointCommands(arm, position, rate[:-1], rate[1:])
+        return JointCommands(arm, position, start, end)
     arm_rate = rates_of_positions(t, arm[:, None])[:, 0]
-    return JointCommands(arm_rate, position, rate[:-1], rate[1:], arm_start=float(arm[0]))
+    return JointCommands(arm_rate, position, start, end, arm_start=float(arm[0]))
+
+
+def rates_with_steps(
+    t: Floats, position: Floats, fastest: float = STEP_ACCELERATION
+) -> tuple[Floats, Floats]:
+    """Return the rates of a column of positions at both ends of every interval.
+
+    Where its rate steps, as where two segments of a maneuver join, each side has a rate of
+    its own, so that a maneuver is the same however finely it is sampled: a step that is
+    smeared over two rows makes the larger an acceleration the closer they are.
+
+    Parameters
+    ----------
+    t : (n,) array
+        Increasing times, n >= 2 [s].
+    position : (n,) array
+        [rad]
+    fastest : float
+        Acceleration that the joint is capable of [rad/s^2]: a step asks for more.
+
+    Returns
+    -------
+    start, end : (n - 1,) array
+        [rad/s]
+    """
+    start, end = np.empty(len(t) - 1), np.empty(len(t) - 1)
+    edges = [0, *_steps(t, position, fastest), len(t) - 1]
+    for first, last in pairwise(edges):
+        piece = slice(first, last + 1)
+        rate = rates_of_positions(t[piece], position[piece, None])[:, 0]
+        start[first:last], end[first:last] = rate[:-1], rate[1:]
+    return start, end
+
+
+def _steps(t: Floats, position: Floats, fastest: float) -> list[int]:
+    """Return the rows at which the rate steps."""
+    step = np.diff(t)
+    chord = np.diff(position) / step
+    size = np.abs(np.diff(chord)) / (0.5 * (step[1:] + step[:-1]))
+    around = np.pad(size, ROWS_AROUND)
+    beside = np.zeros_like(size)
+    for off in range(1, ROWS_AROUND + 1):
+        for at in (ROWS_AROUND - off, ROWS_AROUND + off):
+            np.maximum(beside, around[at : at + len(size)], out=beside)
+    found = np.flatnonzero((size > fastest) & (size > STEP_ALONE * beside))
+    return [int(row) + 1 for row in found]
 
 
 def rates_of_positions(t: Floats, position: Floats) -> Floats:
