@@ -119,16 +119,17 @@ def _direction(t: Floats, joint: int, shape: str, first: int, last: int) -> Dire
     time = t[first : last + 1]
     x = (time - time[0]) / (time[-1] - time[0])
     rest = x * (1.0 - x)
-    rate = {
+    shapes = {
         "bump": rest**2 * (1.0 - 2.0 * x),  # angle x^3 (1 - x)^3
         "leave": (1.0 - x) ** 2 * (1.0 - 4.0 * x),  # x (1 - x)^3
         "arrive": x**2,  # x^3
         "rise": rest**2,
         "fall": -(rest**2),
-    }[shape]
+    }
+    rate = shapes[shape]
     if shape in ("bump", "leave"):
         # the trapezoidal rule of the table leaves a little of the angle, which goes back
-        back = rest**2
+        back = shapes["rise"]
         rate = rate - back * (_integral(time, rate)[-1] / _integral(time, back)[-1])
     rate = rate / np.max(np.abs(rate))
     angle = _integral(time, rate)

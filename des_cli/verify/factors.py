@@ -142,14 +142,14 @@ def _adapted_gap(
     claim: Claim, angle: Floats, factor: Floats, rate: Floats, desired: Floats, target: Floats
 ) -> Floats:
     """Return rate - u * J(theta)^-1 J(Theta) Theta' where J is well conditioned."""
-    jacobian = _jacobian(claim.chain, angle)
-    regular = np.abs(np.linalg.det(jacobian)) > REGULAR
-    w = (_jacobian(claim.chain, desired) @ target[:, :, None])[regular]
-    phi = np.linalg.solve(jacobian[regular], w)[:, :, 0]
+    found = jacobian(claim.chain, angle)
+    regular = np.abs(np.linalg.det(found)) > REGULAR
+    w = (jacobian(claim.chain, desired) @ target[:, :, None])[regular]
+    phi = np.linalg.solve(found[regular], w)[:, :, 0]
     return np.asarray(rate[regular] - factor[regular] * phi)
 
 
-def _jacobian(chain: SeatChain, angle: Floats) -> Floats:
+def jacobian(chain: SeatChain, angle: Floats) -> Floats:
     """Return W along ground axes per unit rate of each joint, (n, 3, 3 joint)."""
     zero = np.zeros_like(angle)
     columns = [chain.at(angle, zero + unit, zero).rate_ground for unit in np.eye(len(JOINTS))]

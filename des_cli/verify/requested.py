@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import accumulate
 
 import numpy as np
 
@@ -40,7 +41,7 @@ def as_requested(felt: Felt, command: Command | None, missing: Shortfall | None)
         rate=rate,
         turning=turning,
         g=g,
-        rotation=np.einsum("ijm,mjk->ikm", felt.rotation, _exponential(turn)),
+        rotation=np.einsum("ijm,jkm->ikm", felt.rotation, exponential(turn)),
     )
 
 
@@ -49,15 +50,32 @@ def _states(sides: Floats) -> Floats:
     return np.concatenate([sides[:, 0], sides[:, 1]]).T
 
 
-def _exponential(vector: Floats) -> Floats:
-    """Return the rotations of rotation vectors (m, 3), (m, 3, 3), by quaternions."""
-    angle = np.linalg.norm(vector, axis=1)
-    half = 0.5 * angle
-    x, y, z = (0.5 * np.sinc(half / np.pi)[:, None] * vector).T
-    w = np.cos(half)
-    rows = [
-        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
+def turned(step: Floats, rates: BodyRates) -> Floats:
+    """Return the attitudes of recorded rates relative to the first, (3, 3, n), one by one.
+
+    What an interval turns by is its fourth-order Magnus expansion: that defines the attitude
+    between two rows, where the rate is a parabola.
+    """
+    h = step[:, None]
+    mean = (rates.start + 4.0 * rates.middle + rates.end) / 6.0
+    turns = exponential(h * mean + h**2 / 12.0 * np.cross(rates.start, rates.end))
+    product = accumulate(np.moveaxis(turns, 2, 0), np.matmul, initial=np.eye(3))
+    return np.stack(list(product), axis=-1)
+
+
+def exponential(vector: Floats) -> Floats:
+    """Return the rotations of rotation vectors (m, 3), (3, 3, m), by quaternions."""
+    half = 0.5 * np.linalg.norm(vector, axis=1)
+    return matrices(np.column_stack([np.cos(half), 0.5 * np.sinc(half / np.pi)[:, None] * vector]))
+
+
+def matrices(quaternion: Floats) -> Floats:
+    """Return the rotations of unit quaternions w, x, y, z (m, 4), (3, 3, m)."""
+    w, x, y, z = quaternion.T
+    return np.array(
+        [
+            [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+        ]
+    )

@@ -1,16 +1,16 @@
 """Whether the metrics of a run tell what its motions do.
 
 The numbers that a user reads are computed by the code that solved. Here they are computed
-anew from the motions, by the seat's second chain. Costs and what a method says of itself are
-checked elsewhere; what simpler means would get (``baseline``), and what single steps of
-conditioning changed (``changes``, ``executable``), are not: their motions are not claimed.
+anew from the motions, by the seat's second chain; costs are checked elsewhere, and what a
+method says of itself is compared with what it handed over. What simpler means would get
+(``baseline``), and what single steps of conditioning changed (``changes``, ``executable``),
+are not: their motions are not claimed.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import TypeAlias, get_args
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from des_cli.model.felt import G_AXES, Felt, RateAxis, RateSizes, TurningAxis, T
 from des_cli.model.loads import Driven
 from des_cli.model.machine import JOINTS
 from des_cli.model.metric import METRICS
-from des_cli.model.metrics import Metrics
+from des_cli.model.metrics import Metrics, SolverFacts
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.verify import felt as seat
@@ -29,6 +29,7 @@ from des_cli.verify.budgets import measure
 from des_cli.verify.claim import Claim
 from des_cli.verify.limits import STEP_TOLERANCE, magnitudes
 from des_cli.verify.occupant import largest_onsets
+from des_cli.verify.singularity import Numbers, singularity_numbers
 
 TOLD_TOLERANCE = 1e-8
 """Relative gap between a number and its twin: sums in another order, and cancellations of
@@ -47,8 +48,16 @@ AT_LIMIT = 0.99
 UNCOUPLED = 1e-6
 """RMS of a part of the cross-coupling [rad/s^2] below which its reduction is rounding."""
 
-Numbers: TypeAlias = Iterator[tuple[str, float | None, float]]
-"""Name, what is told, and what is found."""
+ATTITUDE_TOLERANCE = 1e-6
+"""The same of ``singularity``: an attitude is a product of as many turns as there are rows."""
+
+
+OF_SOLUTION = ("status", "converged", "message")
+OF_REDUCTION = (
+    *("method", "algorithm", "control", "axes", "jacobian", "r1", "r2", "tracking"),
+    *("limits", "ends", "objective", "optimise", "allow_change"),
+)
+"""Words and weights that are told as they are."""
 
 
 def check_told(claim: Claim, told: Metrics) -> list[Check]:
@@ -66,15 +75,19 @@ def check_told(claim: Claim, told: Metrics) -> list[Check]:
     """
     sections = {
         "profile": _profile(claim, told),
+        "solver": _solver(claim, told.solver),
         "fidelity": _fidelity(claim, told),
         "coriolis": _coriolis(claim, told),
         "felt": _felt(claim, told.felt),
         "limits": _limits(claim, told),
     }
-    return [_worst(section, numbers) for section, numbers in sections.items()]
+    return [
+        *(_worst(section, numbers) for section, numbers in sections.items()),
+        _worst("singularity", singularity_numbers(claim, told.singularity), ATTITUDE_TOLERANCE),
+    ]
 
 
-def _worst(section: str, numbers: Numbers) -> Check:
+def _worst(section: str, numbers: Numbers, tolerance: float = TOLD_TOLERANCE) -> Check:
     gaps = {name: _gap(told, found) for name, told, found in numbers}
     # A gap that is not a number is the worst there is.
     name = max(gaps, key=lambda each: math.inf if math.isnan(gaps[each]) else gaps[each])
@@ -82,7 +95,7 @@ def _worst(section: str, numbers: Numbers) -> Check:
         f"told.{section}",
         f"relative gap between the metrics and the motion, largest of {name}",
         gaps[name],
-        TOLD_TOLERANCE,
+        tolerance,
     )
 
 
@@ -95,6 +108,18 @@ def _gap(told: float | None, found: float) -> float:
 
 def _profile(claim: Claim, told: Metrics) -> Numbers:
     yield "duration_s", told.profile.duration_s, claim.duration
+
+
+def _solver(claim: Claim, told: SolverFacts) -> Numbers:
+    solution, asked = claim.solution, claim.reduction
+    for name in ("iterations", "cost", "cost_unreduced", "optimality"):
+        yield name, getattr(told, name), float(getattr(solution, name))
+    budget = {each.metric: each.most for each in asked.budget}
+    yield "budget", float((told.budget or {}) == budget), 1.0
+    for source, names in ((solution, OF_SOLUTION), (asked, OF_REDUCTION)):
+        for name in names:
+            same = np.array_equal(getattr(told, name), getattr(source, name))
+            yield name, float(same), 1.0
 
 
 def _fidelity(claim: Claim, told: Metrics) -> Numbers:

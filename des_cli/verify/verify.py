@@ -54,6 +54,7 @@ def verify(claim: Claim) -> tuple[Check, ...]:
     own = _of_free(claim) if claim.posed is None else _of_factors(claim, claim.posed)
     return (
         *first,
+        _ended(claim.solution),
         *check_limits(claim),
         *check_leads(claim),
         *check_stopping(claim),
@@ -71,10 +72,21 @@ def _finite(solution: Solution, table: Motion) -> Check:
         *(v for m in motions for v in (m.t, m.angle, m.rate_start, m.rate_end)),
         solution.control,
         solution.adjoint,
-        np.array([solution.cost, solution.cost_unreduced]),
+        np.array([solution.cost, solution.cost_unreduced, solution.optimality]),
     )
     bad = sum(int(np.sum(~np.isfinite(values))) for values in numbers)
     return Check("finite", "count of values that are not finite", float(bad), 0.0)
+
+
+def _ended(solution: Solution) -> Check:
+    """Count what a method may not say of a solution that is to be released."""
+    wrong = (
+        not solution.usable,
+        solution.optimality < 0.0,
+        solution.iterations != len(solution.log),
+    )
+    name = "count of what cannot be: how the method ended, its residual, its iterations"
+    return Check("solution", name, float(sum(wrong)), 0.0)
 
 
 def _of_free(claim: Claim) -> list[Check]:

@@ -54,6 +54,7 @@ def free(**options: Any) -> Claim:
 def test_a_free_motion_goes_through_its_checks_in_order() -> None:
     assert keys_of(free()) == [
         *BEFORE,
+        "solution",
         *LIMITS,
         *STOPPING,
         "start.angle",
@@ -124,7 +125,7 @@ def test_factors_go_through_the_checks_of_their_method(
     problem = make_problem(WAVE, 1.0, **posed)
     budget = (Budget(RATE, 0.3),)
     claim = claim_of_factors(problem, np.full((101, 1), 0.99), budget=budget, **options)
-    assert keys_of(claim) == [*BEFORE, *own]
+    assert keys_of(claim) == [*BEFORE, "solution", *own]
 
 
 def test_a_spent_budget_on_factors_is_refused() -> None:
@@ -135,12 +136,23 @@ def test_a_spent_budget_on_factors_is_refused() -> None:
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize(
-    "name", ["t", "angle", "rate_start", "rate_end", "control", "adjoint", "cost", "cost_unreduced"]
+    "name",
+    [
+        "t",
+        "angle",
+        "rate_start",
+        "rate_end",
+        "control",
+        "adjoint",
+        "cost",
+        "cost_unreduced",
+        "optimality",
+    ],
 )
 def test_one_number_that_is_none_ends_the_checks(name: str, value: float) -> None:
     claim = free(factors=np.ones((101, 3)))
     solution = replace(claim.solution, adjoint=np.ones((101, 3)))
-    if name.startswith("cost"):
+    if name.startswith(("cost", "optimality")):
         broken = replace(solution, **{name: value})
     elif name in ("control", "adjoint"):
         values = getattr(solution, name).copy()
@@ -154,6 +166,25 @@ def test_one_number_that_is_none_ends_the_checks(name: str, value: float) -> Non
     checks = verify(replace(claim, solution=broken, commands=OTHER))
     assert values_of(checks) == {"finite": 1.0}
     assert failing(checks) == {"finite"}
+
+
+@pytest.mark.parametrize(
+    ("change", "wrong"),
+    [
+        ({}, 0),
+        ({"status": "acceptable"}, 0),
+        ({"optimality": 1e-9}, 0),
+        ({"status": "diverged"}, 1),
+        ({"optimality": -1e-9}, 1),
+        ({"iterations": 1}, 1),
+        ({"iterations": -1, "status": "iteration-limit", "optimality": -1.0}, 3),
+    ],
+)
+def test_how_a_method_ended_cannot_be_anything(change: dict[str, Any], wrong: int) -> None:
+    claim = free()
+    checks = verify(replace(claim, solution=replace(claim.solution, **change)))
+    assert values_of(checks)["solution"] == wrong
+    assert ("solution" in failing(checks)) == (wrong > 0)
 
 
 @pytest.mark.parametrize("name", ["t", "angle", "rate_start", "rate_end"])
