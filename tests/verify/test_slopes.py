@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.verify.budgets import integrand
 from des_cli.verify.directions import Direction, find_directions
@@ -61,16 +62,25 @@ def test_long_windows_are_sampled() -> None:
     np.testing.assert_allclose(found[0], found[1], rtol=0, atol=5e-3 * scale)
 
 
-def test_the_slope_by_a_seat_angle() -> None:
-    claim = claim_of(WAVE, limits="warn")
-    functions = [lambda felt, before: felt.g[2]]
-    found = slopes_by_seat(claim, WAVE, claim.chain, "pitch", functions)
-    seat, h = claim.seat, 1e-6
+@pytest.mark.parametrize("angle", ["yaw", "pitch"])
+def test_the_slope_by_a_seat_angle(angle: str) -> None:
+    requested = make_wave([[0.6, 0.1], [0.0, 0.3], [0.1, -0.2]], intervals=240, duration=8.0)
+    claim = claim_of(WAVE, requested=requested, limits="warn")
+    functions = [lambda felt, before: felt.g[1], lambda felt, before: (felt.g - before.g)[2] ** 2]
+    fixed = Seat(0.2, -0.3)
+    found = slopes_by_seat(claim, WAVE, SeatChain(DES, fixed), angle, functions)
+    h = 1e-5
     ahead, behind = (
-        claim.weight @ SeatChain(DES, replace(seat, pitch=seat.pitch + s)).along(WAVE).g[2]
+        SeatChain(DES, replace(fixed, **{angle: getattr(fixed, angle) + s})).along(WAVE).g
         for s in (h, -h)
     )
-    assert found[0, 0] == pytest.approx((ahead - behind) / (2.0 * h), rel=1e-6)
+    expected = [
+        claim.weight @ (ahead - behind)[1],
+        claim.weight @ ((ahead - claim.before.g) ** 2 - (behind - claim.before.g) ** 2)[2],
+    ]
+    assert found.shape == (1, 2)
+    np.testing.assert_allclose(found[0], np.array(expected) / (2.0 * h), rtol=1e-6, atol=1e-9)
+    assert np.max(np.abs(found)) > 0.1
 
 
 def still(felt: Felt, before: Felt) -> np.ndarray:
