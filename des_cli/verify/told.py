@@ -142,8 +142,8 @@ def _fidelity(claim: Claim, told: Metrics) -> Numbers:
             yield metric, value, measure(claim, metric, claim.after)
     tilt, clear = _tilt(claim.before.g, claim.after.g)
     if np.any(clear):
-        square = float(claim.weight @ np.where(clear, tilt, 0.0) ** 2 / (claim.weight @ clear))
-        yield "tilt_error_max_deg", fidelity.tilt_error_max_deg, float(np.max(tilt[clear]))
+        square = float(claim.weight @ tilt**2 / (claim.weight @ clear))
+        yield "tilt_error_max_deg", fidelity.tilt_error_max_deg, float(np.max(tilt))
         yield "tilt_error_rms_deg", fidelity.tilt_error_rms_deg, math.sqrt(square)
     modified, requested = claim.modified, claim.requested
     squares = claim.weight @ (_states(modified) - _states(requested)) ** 2
@@ -161,7 +161,7 @@ def _fidelity(claim: Claim, told: Metrics) -> Numbers:
 
 
 def _tilt(before: Floats, after: Floats) -> tuple[Floats, Flags]:
-    """Return the angle between two G-vectors [deg], and where neither is too short for one.
+    """Return the angle between two G-vectors [deg], zero where one is too short, and where not.
 
     By the chord between their directions, whose half is the sine of half the angle.
     """

@@ -19,6 +19,7 @@ from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.problem import Problem
 from des_cli.verify.budgets import (
     INTEGRALS,
+    at_states,
     check_budgets,
     keeps_budgets,
     mean_square_one_minus_p,
@@ -88,6 +89,15 @@ def test_a_metric_of_a_change_that_is_known(metric: str, felt: Felt, value: floa
     assert measure(CLAIM, metric, felt) == pytest.approx(value, rel=1e-9, abs=1e-12)
     same = 1.0 if metric in (RATIO, PEAK) else 0.0
     assert measure(CLAIM, metric, CLAIM.before) == pytest.approx(same, abs=1e-12)
+
+
+def test_half_a_turn_about_any_axis_is_half_a_turn() -> None:
+    axes = np.random.default_rng(8).normal(size=(CLAIM.before.g.shape[1], 3))
+    axes *= np.pi / np.linalg.norm(axes, axis=1)[:, None]
+    turn = Rotation.from_rotvec(axes).as_matrix()
+    rotation = np.einsum("ijm,mjk->ikm", CLAIM.before.rotation, turn)
+    found = at_states(CLAIM, ATTITUDE, replace(CLAIM.before, rotation=rotation))
+    np.testing.assert_allclose(found, 180.0, atol=1e-5)
 
 
 def test_every_metric_is_known_to_the_verification() -> None:

@@ -164,6 +164,15 @@ def test_an_attitude_is_off_by_what_the_seat_does_not_turn() -> None:
     assert found(claim)["integration_error_max_deg"] == pytest.approx(np.degrees(0.1), rel=1e-12)
 
 
+def test_an_attitude_may_be_off_by_half_a_turn() -> None:
+    rng = np.random.default_rng(7)
+    motion = Motion(T, np.tile([0.3, 0.4, 0.7], (5, 1)), np.zeros((4, 3)), np.zeros((4, 3)))
+    for axis in rng.normal(size=(40, 3)):
+        rate = np.tile(np.pi / 4.0 * axis / np.linalg.norm(axis), (4, 1))
+        off = found(claim_on(motion, rate, rate))["integration_error_max_deg"]
+        assert off == pytest.approx(180.0, abs=1e-5)
+
+
 def test_an_attitude_is_compared_from_where_the_seat_begins() -> None:
     """The arm turns by 0.4 rad/s, as it is asked to, and the seat is anywhere."""
     t = np.linspace(0.0, 2.0, 21)

@@ -6,6 +6,7 @@ import copy
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 
 from des_cli import load_profile, pipeline
@@ -138,3 +139,24 @@ def test_the_worst_number_is_named(claim: Claim) -> None:
     content["felt"]["seat_g"]["gz"]["peak_after_g"] *= 1.001
     (check,) = [each for each in check_told(claim, read_metrics(content)) if not each.ok]
     assert "largest of seat_g.gy.peak_after" in str(check)
+
+
+def test_a_tilt_is_the_angle_between_two_directions_up_to_half_a_turn() -> None:
+    """Of G-vectors of any length, where neither is shorter than a tenth of g."""
+    rng = np.random.default_rng(9)
+    g = rng.normal(size=(3, 400))
+    size = np.linalg.norm(g, axis=0)
+    axis = np.cross(g.T, rng.normal(size=(400, 3))).T
+    axis /= np.linalg.norm(axis, axis=0)
+    angle = np.radians(np.concatenate([rng.uniform(0.0, 180.0, 200), np.full(200, 180.0)]))
+    # turned about an axis at right angles to it
+    other = np.cos(angle) * g + np.sin(angle) * np.cross(axis.T, g.T).T
+    other[:, 200:] = -g[:, 200:]
+    tilt, clear = told_module._tilt(g, 0.7 * other)
+    np.testing.assert_array_equal(clear, 0.7 * size >= 0.1)
+    np.testing.assert_allclose(tilt[clear], np.degrees(angle[clear]), atol=1e-5)
+    short = np.array([[0.0999], [0.0], [0.0]])
+    for pair in ((short, g[:, :1]), (g[:, :1], short)):
+        tilt, clear = told_module._tilt(*pair)
+        assert (tilt[0], clear[0]) == (0.0, False)
+    assert told_module._tilt(np.array([[0.1001], [0.0], [0.0]]), g[:, :1])[1][0]
