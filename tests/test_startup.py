@@ -58,6 +58,7 @@ def test_help_leaves_numpy_unimported(
     args: list[str], tmp_path: Path, python_environment: dict[str, str]
 ) -> None:
     heavy = {"numpy", "scipy", "pandas", "pyarrow", "matplotlib", "pydantic", "ruamel.yaml"}
+    heavy |= {"dask", "distributed"}
     assert imported(heavy, *args, cwd=tmp_path, env=python_environment) == set()
 
 
@@ -76,7 +77,7 @@ def test_factors_leave_the_free_motion_and_filters_unimported(
     tmp_path: Path, python_environment: dict[str, str]
 ) -> None:
     watched = {"des_cli.reduction.free.method", "des_cli.reduction.g_profile"}
-    watched |= {"scipy.signal", "scipy.interpolate"}
+    watched |= {"scipy.signal", "scipy.interpolate", "dask", "distributed"}
     args = ["reduce", "cobra", "--set", "time.step_s=0.25", "-o", "x.csv"]
     assert imported(watched, *args, cwd=tmp_path, env=python_environment) == set()
 

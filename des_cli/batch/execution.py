@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from des_cli.batch.earlier import settle, stands, unnamed
 from des_cli.batch.job import Job, JobResult, Output
@@ -26,10 +26,27 @@ if TYPE_CHECKING:
     from des_cli.model.solution import Iteration
 
 
+class Reduce(Protocol):
+    """How a profile that was read is reduced, and its output written."""
+
+    def __call__(
+        self,
+        job: Job,
+        profile: Profile,
+        target: Path,
+        on_iteration: Callable[[Iteration], None] | None,
+        on_stage: OnStage,
+        /,
+    ) -> JobResult:
+        """Return what became of it."""
+
+
 def run_job(
     job: Job,
     on_iteration: Callable[[Iteration], None] | None = None,
     on_stage: OnStage = untold,
+    *,
+    reduce: Reduce | None = None,
 ) -> JobResult:
     """Load a profile, reduce it, require its release, and write the output.
 
@@ -44,7 +61,10 @@ def run_job(
         Called with each of the solver's iterations.
     on_stage : callable, optional
         Called with a few words for what is done next.
+    reduce : callable, optional
+        Reduces and writes in the place of this process.
     """
+    do = reduce or _reduce_and_write
     source, output = job.source, job.output
     read = _read(job, on_stage)
     if isinstance(read, JobResult):
@@ -63,17 +83,15 @@ def run_job(
             _refuse_existing(output, target)
             return JobResult(source.name, read.name, written=str(target), state="planned")
         if output.out == STANDARD_STREAM:
-            return _reduce_and_write(job, read, target, on_iteration, on_stage)
+            return do(job, read, target, on_iteration, on_stage)
         with locked(target):
             _refuse_existing(output, target)
-            result = _result_of(
-                job, read.name, _reduce_and_write, job, read, target, on_iteration, on_stage
-            )
+            result = result_of(job, read.name, do, job, read, target, on_iteration, on_stage)
             return replace(
                 result, notices=(*result.notices, *_earlier(settle(output, target, result)))
             )
 
-    return _result_of(job, read.name, whole)
+    return result_of(job, read.name, whole)
 
 
 def _earlier(sentences: Iterable[str]) -> tuple[Notice, ...]:
@@ -81,7 +99,7 @@ def _earlier(sentences: Iterable[str]) -> tuple[Notice, ...]:
     return tuple(Notice("earlier", sentence) for sentence in sentences)
 
 
-def _result_of(job: Job, name: str, do: Callable[..., JobResult], *args: Any) -> JobResult:
+def result_of(job: Job, name: str, do: Callable[..., JobResult], *args: Any) -> JobResult:
     """Make a result of whatever becomes of a step of a job."""
     try:
         return do(*args)
@@ -140,6 +158,26 @@ def _reduce_and_write(
     on_iteration: Callable[[Iteration], None] | None,
     on_stage: OnStage,
 ) -> JobResult:
+    result = reduce_with(lambda run: _write(job, run, target), job, profile, on_iteration, on_stage)
+    return replace(result, written=str(target)) if result.ok else result
+
+
+def reduce_with(
+    write: Callable[[Run], bytes | None],
+    job: Job,
+    profile: Profile,
+    on_iteration: Callable[[Iteration], None] | None = None,
+    on_stage: OnStage = untold,
+) -> JobResult:
+    """Reduce a profile, require its release, and hand the run on.
+
+    Parameters
+    ----------
+    write : callable
+        Given the run; what it returns is the result's table.
+    job, profile, on_iteration, on_stage
+        As of `run_job`.
+    """
     from des_cli.pipeline import reduce_profile
 
     source, output = job.source.name, job.output
@@ -154,12 +192,12 @@ def _reduce_and_write(
     try:
         run.require_release()
         on_stage("plots and tables" if output.plots and output.table_format is None else "tables")
-        table = _write(job, run, target)
+        table = write(run)
     except DesError as error:
         # What the solver found explains the refusal: it is told all the same.
         lines = tuple(str(complaint) for complaint in error.complaints)
         return JobResult(source, profile.name, error.exit_code, lines, state="failed", **told)
-    return JobResult(source, profile.name, written=str(target), table=table, **told)
+    return JobResult(source, profile.name, table=table, **told)
 
 
 def _write(job: Job, run: Run, target: Path) -> bytes | None:

@@ -1,8 +1,8 @@
 """Tasks over an Executor, or one after the other in this process.
 
 A task is plain data that can cross a process boundary, and so is its result: a
-pool of this machine and a ``dask.distributed`` client's executor
-(``client.get_executor()``) are one code path.
+pool of this machine's processes and threads that wait for a cluster (``cluster``) are
+one code path.
 """
 
 from __future__ import annotations

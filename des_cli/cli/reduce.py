@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NoReturn, cast
 
 import click
+from click.core import ParameterSource
 
 from des_cli.batch.job import Job, Output, TableFormat
 from des_cli.batch.source import STANDARD_STREAM
@@ -70,6 +71,11 @@ Examples:
     help="Profiles at a time; 0 is one for each CPU.",
 )
 @click.option(
+    "--scheduler",
+    metavar="tcp://HOST:PORT",
+    help="Reduce on the workers of this Dask scheduler instead of here; runs are written here.",
+)
+@click.option(
     "--grid",
     metavar="KEY=V,V...",
     multiple=True,
@@ -96,6 +102,7 @@ def reduce(
     out: str | None,
     table_format: str | None,
     jobs: int,
+    scheduler: str | None,
     grid: tuple[str, ...],
     fail_on: frozenset[str],
     keep_going: bool,
@@ -116,6 +123,8 @@ def reduce(
     form = _table_format(out, table_format, several=several)
     if form is not None and resume:
         raise click.UsageError("--resume needs run folders: a table does not tell its profile.")
+    if scheduler is not None:
+        _refuse_beside_scheduler(form)
     if out == STANDARD_STREAM and not dry_run:
         refuse_binary_on_terminal(form)
     stdin = read_stdin(profiles, caps)
@@ -149,7 +158,15 @@ def reduce(
     parts = all_jobs(batch, grid)
     if len(parts) > 1 and form is not None:
         _refuse_one_table()
-    return run_batch(console, parts, jobs, keep_going)
+    return run_batch(console, parts, jobs, keep_going, None if dry_run else scheduler)
+
+
+def _refuse_beside_scheduler(form: TableFormat | None) -> None:
+    """Refuse what a cluster cannot do."""
+    if form is not None:
+        raise click.UsageError("--scheduler needs run folders: name a folder with -o DIR.")
+    if click.get_current_context().get_parameter_source("jobs") != ParameterSource.DEFAULT:
+        raise click.UsageError("--jobs is for this machine: a scheduler knows its own workers.")
 
 
 def _refuse_one_table() -> NoReturn:

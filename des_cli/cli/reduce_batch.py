@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from des_cli.batch.job import Job, JobResult
@@ -36,7 +39,13 @@ def _with_grid(batch: list[Job], grid: tuple[str, ...]) -> list[Job]:
     return grid_jobs(batch, axes)
 
 
-def run_batch(console: Console, batch: list[Job], jobs: int, keep_going: bool) -> ExitCode:
+def run_batch(
+    console: Console,
+    batch: list[Job],
+    jobs: int,
+    keep_going: bool,
+    scheduler: str | None = None,
+) -> ExitCode:
     """Reduce profiles, tell how each ended, and sum up several.
 
     Parameters
@@ -47,18 +56,17 @@ def run_batch(console: Console, batch: list[Job], jobs: int, keep_going: bool) -
         How many at a time; 0 is one for each CPU.
     keep_going : bool
         Whether to go on after one has failed.
+    scheduler : str, optional
+        Address of the cluster that reduces them.
     """
-    from des_cli.batch.execution import run_job
-    from des_cli.batch.pool import local_executor
     from des_cli.batch.runner import run_tasks
     from des_cli.batch.source import require_distinct_names
     from des_cli.batch.summary import SummaryRow, exit_code_of
 
-    workers = min(jobs, len(batch)) if jobs else jobs
     alone = len(batch) == 1
     rows: list[SummaryRow] = []
     with (
-        local_executor(1 if alone else workers) as executor,
+        _workers(console, len(batch), jobs, scheduler) as (executor, work),
         console.working(len(batch)) as line,
     ):
         if not alone:
@@ -67,7 +75,7 @@ def run_batch(console: Console, batch: list[Job], jobs: int, keep_going: bool) -
         live = executor is None and console.verbosity >= VERBOSE
         for result in run_tasks(
             batch,
-            run_job,
+            work,
             JobResult.failed,
             executor,
             keep_going=keep_going,
@@ -87,6 +95,26 @@ def run_batch(console: Console, batch: list[Job], jobs: int, keep_going: bool) -
     if not alone:
         _sum_up(console, batch, rows)
     return exit_code_of(rows, len(batch))
+
+
+@contextmanager
+def _workers(
+    console: Console, count: int, jobs: int, scheduler: str | None
+) -> Iterator[tuple[Executor | None, Callable[..., JobResult]]]:
+    """Offer what runs jobs, and what is done with each."""
+    if scheduler is not None:
+        from des_cli.batch.cluster import cluster
+
+        with cluster(scheduler) as connected:
+            if not connected.workers:
+                console.warn([f"{scheduler} has no workers yet: waiting for one"])
+            yield connected.executor, connected.work
+        return
+    from des_cli.batch.execution import run_job
+    from des_cli.batch.pool import local_executor
+
+    with local_executor(1 if count == 1 else min(jobs, count)) as executor:
+        yield executor, run_job
 
 
 def _sum_up(console: Console, batch: list[Job], rows: list[SummaryRow]) -> None:

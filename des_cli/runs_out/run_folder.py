@@ -123,10 +123,41 @@ def write_run(
     NotReleasedError
         If a value of a table is not a finite number.
     """
-    target = Path(folder)
-    _require_free(target, overwrite)
+    _require_free(Path(folder), overwrite)
+    return write_outputs(
+        encode_run(run, plots=plots),
+        folder,
+        overwrite=overwrite,
+        accept=lambda built: accept(read_bytes(built / COMMANDS)),
+    )
+
+
+def encode_run(run: Run, *, plots: bool = True) -> dict[str, bytes]:
+    """Return the outputs of a run by their names in its folder, the manifest last."""
     outputs = _outputs(run, plots)
     outputs[MANIFEST] = encode_manifest(run, outputs)
+    return outputs
+
+
+def write_outputs(
+    outputs: Mapping[str, bytes],
+    folder: str | os.PathLike[str],
+    *,
+    overwrite: bool = False,
+    accept: Callable[[Path], None],
+) -> tuple[Path, ...]:
+    """Write what `encode_run` returned, as `write_run` does.
+
+    Parameters
+    ----------
+    outputs : mapping of str to bytes
+    folder, overwrite
+        As of `write_run`.
+    accept : callable
+        Given the folder in which all was built; what it raises leaves the target as it was.
+    """
+    target = Path(folder)
+    _require_free(target, overwrite)
     if not target.is_dir():
         _appear(target, outputs, accept)
     elif not (_may_be_exchanged(target) and _exchange(target, outputs, accept)):
@@ -285,7 +316,7 @@ def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
     return outputs
 
 
-def _write_all(folder: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> None:
+def _write_all(folder: Path, outputs: Mapping[str, bytes], accept: Callable[[Path], None]) -> None:
     for name, data in outputs.items():
         path = folder / name
         with plain_words(path, "cannot be written"):
@@ -293,10 +324,10 @@ def _write_all(folder: Path, outputs: Mapping[str, bytes], accept: Callable[[byt
         atomic.write_through(path, data)
     for inner in {(folder / name).parent for name in outputs}:
         atomic.sync_folder(inner)
-    accept(read_bytes(folder / COMMANDS))
+    accept(folder)
 
 
-def _appear(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> None:
+def _appear(target: Path, outputs: Mapping[str, bytes], accept: Callable[[Path], None]) -> None:
     """Build a folder beside its name, and give it the name when it is whole."""
     with plain_words(target, "cannot be written"):
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -324,7 +355,7 @@ def _may_be_exchanged(target: Path) -> bool:
     return True
 
 
-def _exchange(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> bool:
+def _exchange(target: Path, outputs: Mapping[str, bytes], accept: Callable[[Path], None]) -> bool:
     """Build a folder beside, and give each the name of the other; tell whether that went."""
     home = target.resolve()
     with (
@@ -342,7 +373,7 @@ def _exchange(target: Path, outputs: Mapping[str, bytes], accept: Callable[[byte
     return True
 
 
-def _fill(target: Path, outputs: Mapping[str, bytes], accept: Callable[[bytes], None]) -> None:
+def _fill(target: Path, outputs: Mapping[str, bytes], accept: Callable[[Path], None]) -> None:
     """Build inside an existing folder, then move every file to its place, the manifest last.
 
     The run that was there loses its manifest before its first file is
