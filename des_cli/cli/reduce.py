@@ -76,6 +76,11 @@ Examples:
     help="Reduce on the workers of this Dask scheduler instead of here; runs are written here.",
 )
 @click.option(
+    "--store",
+    metavar="DIR",
+    help="Also add a row a run to this store of Parquet files; report --store reads it.",
+)
+@click.option(
     "--grid",
     metavar="KEY=V,V...",
     multiple=True,
@@ -103,6 +108,7 @@ def reduce(
     table_format: str | None,
     jobs: int,
     scheduler: str | None,
+    store: str | None,
     grid: tuple[str, ...],
     fail_on: frozenset[str],
     keep_going: bool,
@@ -123,6 +129,8 @@ def reduce(
     form = _table_format(out, table_format, several=several)
     if form is not None and resume:
         raise click.UsageError("--resume needs run folders: a table does not tell its profile.")
+    if store is not None and form is not None:
+        raise click.UsageError("--store needs run folders: name a folder with -o DIR.")
     if scheduler is not None:
         _refuse_beside_scheduler(form)
     if out == STANDARD_STREAM and not dry_run:
@@ -158,7 +166,8 @@ def reduce(
     parts = all_jobs(batch, grid)
     if len(parts) > 1 and form is not None:
         _refuse_one_table()
-    return run_batch(console, parts, jobs, keep_going, None if dry_run else scheduler)
+    there = (None, None) if dry_run else (scheduler, store)
+    return run_batch(console, parts, jobs, keep_going, *there)
 
 
 def _refuse_beside_scheduler(form: TableFormat | None) -> None:

@@ -45,6 +45,7 @@ def run_batch(
     jobs: int,
     keep_going: bool,
     scheduler: str | None = None,
+    store: str | None = None,
 ) -> ExitCode:
     """Reduce profiles, tell how each ended, and sum up several.
 
@@ -58,15 +59,19 @@ def run_batch(
         Whether to go on after one has failed.
     scheduler : str, optional
         Address of the cluster that reduces them.
+    store : str, optional
+        Folder of a store to which the runs are added.
     """
     from des_cli.batch.runner import run_tasks
     from des_cli.batch.source import require_distinct_names
+    from des_cli.batch.store import storing
     from des_cli.batch.summary import SummaryRow, exit_code_of
 
     alone = len(batch) == 1
     rows: list[SummaryRow] = []
     with (
         _workers(console, len(batch), jobs, scheduler) as (executor, work),
+        storing(store) as writer,
         console.working(len(batch)) as line,
     ):
         if not alone:
@@ -88,6 +93,8 @@ def run_batch(
                     console.iteration(iteration)
             console.end_log()
             rows.append(SummaryRow.of(result))
+            if writer is not None:
+                writer.add(result)
             print_result(console, result, alone=alone, counted=counted)
             if result.table is not None:
                 with console.aside():

@@ -10,6 +10,7 @@ from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
 from des_cli.cli.options import DEFAULT_RUNS
+from des_cli.cli.report_store import list_store
 from des_cli.cli.stdout import write_data
 from des_cli.errors import Complaint, DesError, FileAccessError
 
@@ -20,6 +21,7 @@ from des_cli.errors import Complaint, DesError, FileAccessError
 Examples:
   des-coriolis report
   des-coriolis report runs/cobra -o cobra.html
+  des-coriolis report --store study --where "seat_g_rms_error_g <= 0.05"
 """,
 )
 @click.argument("runs", metavar="[RUN]...", nargs=-1)
@@ -27,18 +29,41 @@ Examples:
     "-o",
     "--out",
     metavar="FILE|-",
-    default="report.html",
-    show_default=True,
-    help="The page; an earlier one is replaced.",
+    help="The page, or the rows of a store as CSV; an earlier file is replaced.  "
+    "[default: report.html, or stdout]",
+)
+@click.option("--store", metavar="DIR", help="Instead: list the runs of a store.")
+@click.option(
+    "--where",
+    metavar="CONDITION",
+    help="Of a store only these, such as: seat_g_rms_error_g <= 0.05 and status = converged",
 )
 @verbosity_options
 @click.pass_obj
-def report(console: Console, runs: tuple[str, ...], out: str) -> None:
+def report(
+    console: Console,
+    runs: tuple[str, ...],
+    out: str | None,
+    store: str | None,
+    where: str | None,
+) -> None:
     """Make a single HTML page of each RUN, or of every run under runs/.
 
     A RUN is a run folder, or a folder of run folders. The page needs no
-    network and no other file.
+    network and no other file. With --store, list the runs that reduce --store
+    added to it instead: for people on a terminal, otherwise as CSV.
     """
+    if store is not None:
+        if runs:
+            raise click.UsageError("--store lists the runs of a store: leave out RUN.")
+        list_store(console, store, where, out)
+        return
+    if where is not None:
+        raise click.UsageError("--where needs --store.")
+    _make_page(console, runs, out or "report.html")
+
+
+def _make_page(console: Console, runs: tuple[str, ...], out: str) -> None:
     from des_cli.runs_out.atomic import require_file, write_file
     from des_cli.runs_out.run_folder import StoredRun, read_run
     from des_cli.show.page.page import render_report
