@@ -7,8 +7,10 @@ one code path.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
+from itertools import islice
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 
 from des_cli.errors import Complaint, FileAccessError
@@ -20,6 +22,9 @@ if TYPE_CHECKING:
 
     OnIteration: TypeAlias = Callable[[Iteration], None]
 
+
+AHEAD = 1024
+"""Tasks that an executor is given before the first of them is told: the most results that wait."""
 
 LOST = "its worker process died, perhaps for want of memory; try fewer --jobs"
 """What is said of a task whose worker is gone."""
@@ -103,20 +108,44 @@ def run_tasks(
         if not future.cancelled():
             on_finished()
 
-    futures = [executor.submit(work, task) for task in tasks]
-    try:
-        for future in futures:
+    waiting = iter(tasks)
+    begun: deque[tuple[AnyTask, Future[AnyResult]]] = deque()
+
+    def begin(count: int) -> None:
+        for task in islice(waiting, count):
+            future = _submitted(executor, work, task)
+            begun.append((task, future))
             future.add_done_callback(note)
-        for task, future in zip(tasks, futures, strict=True):
+
+    try:
+        begin(AHEAD)
+        while begun:
+            task, future = begun.popleft()
             # What had begun when another task failed is finished and told.
             if future.cancelled():
                 continue
             result = _result_of(task, future, failed)
-            if not (result.ok or keep_going):
-                _cancel(futures)
+            del future  # and its result, of which a long batch has many
+            if result.ok or keep_going:
+                begin(1)
+            else:
+                waiting = iter(())
+                _cancel(each for _, each in begun)
             yield result
     finally:
-        _cancel(futures)
+        _cancel(each for _, each in begun)
+
+
+def _submitted(
+    executor: Executor, work: Work[AnyTask, AnyResult], task: AnyTask
+) -> Future[AnyResult]:
+    """Have a task done; by an executor that is broken it has failed already."""
+    try:
+        return executor.submit(work, task)
+    except BrokenExecutor as error:
+        lost: Future[AnyResult] = Future()
+        lost.set_exception(error)
+        return lost
 
 
 def _cancel(futures: Iterable[Future[Any]]) -> None:

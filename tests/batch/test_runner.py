@@ -1,8 +1,12 @@
 """Jobs are data, and run the same wherever an Executor takes them."""
 
+from __future__ import annotations
+
 import os
 import threading
+import weakref
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -31,6 +35,18 @@ class Pretend:
         if job.label == "bad":
             return JobResult.failed(job, ProfileError.of("bad"))
         return JobResult(job.label, job.label)
+
+
+@dataclass(eq=False)
+class Held:
+    """A result of which a test counts how many there are."""
+
+    label: str
+    ok: bool = True
+
+    @classmethod
+    def failed(cls, task: Job, error: Exception) -> Held:
+        return cls(task.label, ok=False)
 
 
 JOBS = [Job(Source(name)) for name in ("a", "bad", "b", "c")]
@@ -109,3 +125,35 @@ def test_a_dask_client_is_one_more_executor() -> None:
         results = list(run_tasks(jobs, run_job, JobResult.failed, executor, keep_going=True))
     assert results == list(run_tasks(jobs, run_job, JobResult.failed, keep_going=True))
     assert [result.exit_code for result in results] == [0, 1, 0]
+
+
+def test_a_long_batch_keeps_few_results(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "AHEAD", 4)
+    alive: weakref.WeakSet[Held] = weakref.WeakSet()
+    most = 0
+
+    def run(job: Job, *told: object) -> Held:
+        held = Held(job.label)
+        alive.add(held)
+        return held
+
+    names = [str(k) for k in range(50)]
+    jobs = [Job(Source(name)) for name in names]
+    told = []
+    with ThreadPoolExecutor(2) as executor:
+        for result in run_tasks(jobs, run, Held.failed, executor):
+            told.append(result.label)
+            most = max(most, len(alive))
+    assert told == names
+    assert most <= 4 + 3  # that wait, are computed and are told
+
+
+def test_a_pool_that_breaks_fails_what_it_was_not_yet_given(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(runner, "AHEAD", 1)
+    jobs = [Job(Source(str(tmp_path / name))) for name in ("a", "b", "c")]
+    with local_executor(2) as executor:
+        results = list(run_tasks(jobs, die, JobResult.failed, executor, keep_going=True))
+    assert [result.source for result in results] == [job.label for job in jobs]
+    assert all(runner.LOST in result.complaints[0] for result in results)
