@@ -52,7 +52,7 @@ COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Is: ast.IsNot,
     ast.IsNot: ast.Is,
 }
-CONVERSIONS = {"np.asarray", "float", "int", "bool", "str", "tuple", "list"}
+CONVERSIONS = {"np.asarray", "float", "int", "bool", "str", "tuple", "list", "MappingProxyType"}
 """Calls that change a type and no value: without them the tests see the same."""
 
 TINY = 1e-200

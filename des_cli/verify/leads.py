@@ -24,17 +24,11 @@ def check_leads(claim: Claim) -> list[Check]:
     reduction = claim.reduction
     early, late = maneuver.t[0] - table.t[0], table.t[-1] - maneuver.t[-1]
     lengths = np.array([early - reduction.lead_in, late - reduction.lead_out])
-    rates = [
-        rate
-        for rate, lead in (
-            (table.rate_start[0], reduction.lead_in),
-            (table.rate_end[-1], reduction.lead_out),
-        )
-        if lead
-    ]
+    at_rest = np.array([[reduction.lead_in], [reduction.lead_out]]) > 0.0
+    rates = np.where(at_rest, (table.rate_start[0], table.rate_end[-1]), 0.0)
     return [
         _none("leads.length", "difference of the leads' lengths [s]", lengths),
-        _none("leads.rest", "rates at rest [rad/s]", np.concatenate([np.zeros(3), *rates])),
+        _none("leads.rest", "rates at rest [rad/s]", rates),
         _none("leads.maneuver", "change of the maneuver by its leads", _off(table, maneuver)),
     ]
 

@@ -13,7 +13,14 @@ from des_cli.model.profile import Reduction
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
 from des_cli.verify.claim import Claim
-from des_cli.verify.factors import check_cost, check_dynamics, check_zero, cost_of, integrated
+from des_cli.verify.factors import (
+    check_cost,
+    check_dynamics,
+    check_zero,
+    cost_of,
+    integrated,
+    is_still,
+)
 from tests.reduction.conftest import (
     make_problem,
     make_uneven,
@@ -292,3 +299,19 @@ def test_what_vanishes_at_samples_alone_does_not_vanish() -> None:
     # the rates cancel in the middle: at the sides they do not
     end[1, 1] = -0.2
     assert not check_zero(claim_of(replace(motion, rate_start=start, rate_end=end)), problem).ok
+
+
+@pytest.mark.parametrize(("share", "still"), [(0.9, True), (1.1, False)])
+@pytest.mark.parametrize("axes", ["seat", "report"])
+def test_a_motion_is_still_by_the_mean_of_what_it_weighs(
+    share: float, still: bool, axes: str
+) -> None:
+    """A billionth of a rad^2/s^4: twice the study's cost of factors of one, over the duration."""
+    motion = make_wave([[0.3, 0.1], [0.1, 0.1], [0.1, -0.05]], intervals=100)
+    problem = make_problem(motion, axes=axes, r1=(1.0, 2.0, 3.0))
+    duration = motion.t[-1] - motion.t[0]
+    assert abs(duration - 1.0) > 0.5
+    ones = np.ones((101, 1))
+    cost = float(study_cost(problem, study_motion(problem, ones)))
+    problem = replace(problem, r1=problem.r1 * share * 1e-9 * duration / (2.0 * cost))
+    assert is_still(claim_of_factors(problem, ones), problem) == still

@@ -11,7 +11,10 @@ from des_cli.kinematics.response import respond
 from des_cli.model.machines import DES
 from des_cli.model.metric import Budget
 from des_cli.model.motion import integrate_sides
+from des_cli.verify.claim import Claim
+from des_cli.verify.free_optimality import check_cost, check_optimality
 from tests.reduction.conftest import make_cobra
+from tests.support.claims import claim_of, values_of
 from tests.support.free_case import RATE, Case, G, between, with_rates
 
 
@@ -142,3 +145,43 @@ def test_a_maneuver_without_cross_coupling_passes():
     for objective in ("coriolis", "blend"):
         case = Case(requested=with_rates(t, np.zeros(3), rate), objective=objective)
         assert case.failed() == set()
+
+
+def turning(share: float) -> Claim:
+    """Arm and fork turn as one, so that what couples is a share of what is next to nothing.
+
+    At the fork's middle the study's (22)-(24) have the size of the product of the two rates; it
+    moves by so little that this is all. The mean square is a share of 1e-9 rad^2/s^4.
+    """
+    t = np.linspace(0.0, 8.0, 401)
+    fork = 1e-4
+    arm = np.sqrt(share * 1e-9) / fork
+    return claim_of(
+        with_rates(t, np.zeros(3), np.tile([arm, fork, 0.0], (401, 1))), limits="warn", r1=np.eye(3)
+    )
+
+
+@pytest.mark.parametrize(("share", "tested"), [(0.9, False), (1.1, True)])
+def test_a_motion_of_next_to_no_cross_coupling_need_not_be_an_optimum(share, tested):
+    assert bool(check_optimality(turning(share))) == tested
+
+
+@pytest.mark.parametrize("share", [0.25, 4.0])
+def test_costs_of_next_to_nothing_are_compared_absolutely(share):
+    """Costs of 1e-9 over 8 s, and one that is told to be a tenth of that more."""
+    claim = turning(share)
+    cost = 0.5 * 8.0 * share * 1e-9
+    told = cost + 0.8e-9
+    for name in ("cost", "cost_unreduced"):
+        costs = {"cost": cost, "cost_unreduced": cost} | {name: told}
+        solution = replace(claim.solution, **costs)
+        found = values_of(check_cost(replace(claim, solution=solution)))
+        # relative to the cost, or to 8e-9 where that is more
+        key = name.replace("_", ".")
+        assert found[key] == pytest.approx(0.8e-9 / max(cost, 8e-9), rel=1e-3)
+        assert max(abs(v) for k, v in found.items() if k != key) < 1e-3
+    # from a desired motion with next to none the objective may rise by 1e-9 of 8e-9
+    still = turning(0.0)
+    risen = replace(claim, requested=still.requested, desired=still.desired)
+    rise = values_of(check_cost(risen))["objective.rise"]
+    assert rise == pytest.approx(share, rel=1e-3)

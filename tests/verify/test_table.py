@@ -312,19 +312,19 @@ def test_no_limit_is_measured_that_there_is_not() -> None:
     assert math.isnan(value("limits.fork.rate", table, limited(rate=0.0)))
 
 
-def test_rows_may_be_off_by_what_units_and_text_round_and_times_by_nothing() -> None:
-    size = 3.0
+@pytest.mark.parametrize("size", [3.0, -3.0])
+def test_rows_may_be_off_by_what_units_and_text_round_and_times_by_nothing(size: float) -> None:
     right = rows([0.0, 1.0, 2.0], [size, 1.0, -2.0])
-    bits = size * 2.0**-52
+    bits = 3.0 * 2.0**-52
     for column, key in enumerate(("table.t", "table.arm", "table.fork", "table.cab")):
-        for off, ok in ((2.0 * bits, column > 0), (6.0 * bits, False)):
+        for off, ok in ((2.0, column > 0), (-2.0, column > 0), (6.0, False), (-6.0, False)):
             values = right.values.copy()
-            values[1, column] += off
+            values[1, column] += off * bits
             found = CommandTable(values[:, 0], values[:, 1], values[:, 2:])
             checks = {check.key: check for check in check_rows(found, right)}
             assert list(checks)[1:] == ["table.t", "table.arm", "table.fork", "table.cab"]
             assert checks[key].ok == ok
-            assert checks[key].value == pytest.approx(off, abs=2.0**-52)
+            assert checks[key].value == pytest.approx(abs(off) * bits, abs=2.0**-52)
     assert [check.value for check in check_rows(right.between(0, 1), right)] == [1.0]
 
 
