@@ -100,6 +100,14 @@ def test_a_rate_that_is_missed_counts_as_the_mean_of_its_sides(
     assert found(claim_on(motion, start, end))["max_residual_rad_s"] == pytest.approx(0.07 * share)
 
 
+def test_a_rate_that_is_missed_on_both_sides_counts_whole() -> None:
+    motion = standing(rate=0.4)
+    start, end = made(motion)
+    start[2] += [0.02, -0.03, 0.06]
+    end[1] += [0.02, -0.03, 0.06]
+    assert found(claim_on(motion, start, end))["max_residual_rad_s"] == pytest.approx(0.07)
+
+
 NEAR = [
     # 1 - sin of the fork below 0.01: damped from 1.4293 rad on
     ([0.1, 1.4, 0.2, 0.3, 0.1], 0),
