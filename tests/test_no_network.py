@@ -1,4 +1,4 @@
-"""Nothing of the tool asks for a network."""
+"""Nothing of the tool asks for a network, unless it is told of a scheduler."""
 
 from __future__ import annotations
 
@@ -28,6 +28,8 @@ from des_cli.cli.main import program
 for line in (
     "reduce cobra_felt -o run --set time.step_s=0.1",
     "report run -o page.html",
+    "reduce cobra cobra_table3 -o runs --set time.step_s=0.1 --no-plots --store store",
+    "report --store store --where iterations>0",
     "verify run",
     "validate cobra",
     "sweep cobra -o curve.csv --set time.step_s=0.1 --budgets 0.02,0.05 --controls scalar",

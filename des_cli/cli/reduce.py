@@ -167,7 +167,7 @@ def reduce(
     if len(parts) > 1 and form is not None:
         _refuse_one_table()
     there = (None, None) if dry_run else (scheduler, store)
-    return run_batch(console, parts, jobs, keep_going, *there)
+    return run_batch(console, parts, jobs, keep_going, *there, distinct=bool(grid))
 
 
 def _refuse_beside_scheduler(form: TableFormat | None) -> None:

@@ -46,6 +46,8 @@ def run_batch(
     keep_going: bool,
     scheduler: str | None = None,
     store: str | None = None,
+    *,
+    distinct: bool = False,
 ) -> ExitCode:
     """Reduce profiles, tell how each ended, and sum up several.
 
@@ -61,6 +63,8 @@ def run_batch(
         Address of the cluster that reduces them.
     store : str, optional
         Folder of a store to which the runs are added.
+    distinct : bool
+        Whether no two have one name, as those of a grid; otherwise each is read to see.
     """
     from des_cli.batch.runner import run_tasks
     from des_cli.batch.source import require_distinct_names
@@ -74,7 +78,7 @@ def run_batch(
         storing(store) as writer,
         console.working(len(batch)) as line,
     ):
-        if not alone:
+        if not (alone or distinct):
             require_distinct_names(job.source for job in batch)
         counted = not alone and console.has_line and console.verbosity < VERBOSE
         live = executor is None and console.verbosity >= VERBOSE

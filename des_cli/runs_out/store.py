@@ -128,7 +128,7 @@ def _each_once(batches: Iterator[Any]) -> Iterator[dict[str, Any]]:
     seen: set[bytes] = set()
     for batch in batches:
         for row in batch.to_pylist():
-            digest = hashlib.sha256(repr(sorted(row.items())).encode()).digest()
+            digest = hashlib.sha256(repr(list(row.values())).encode()).digest()
             if digest not in seen:
                 seen.add(digest)
                 yield row

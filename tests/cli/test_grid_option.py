@@ -3,8 +3,10 @@
 import click
 import pytest
 
+from des_cli.batch import source
 from des_cli.batch.grid import Axis
 from des_cli.cli.grid_option import read_grid
+from des_cli.model.profile import Profile
 from des_cli.profiles_in.setting import Setting
 from tests.support.run_files import metrics_of, tree
 
@@ -109,6 +111,34 @@ def test_two_profiles_of_one_name_share_no_grid(invoke, write_profile, tmp_path)
     result = invoke("reduce", "same.yaml", "copy.yaml", "--grid", "r2=1,2")
     assert result.exit_code == 2
     assert "several profiles have this name: same.yaml, copy.yaml" in result.stderr
+
+
+def test_only_the_profiles_are_read_to_compare_their_names_and_not_the_points(
+    invoke, write_profile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read = []
+    load = source.load_source
+
+    def noted(each: source.Source) -> Profile:
+        read.append(each.name)
+        return load(each)
+
+    monkeypatch.setattr(source, "load_source", noted)
+    files = [write_profile(name).name for name in ("one", "two")]
+    assert invoke("reduce", *files, "--grid", "r2=1,2,3", "--dry-run").exit_code == 0
+    assert read == files
+
+
+def test_a_split_record_has_a_run_for_each_stretch_and_point(invoke, tmp_path) -> None:
+    times = [0.1 * row + (5.0 if row > 10 else 0.0) for row in range(22)]
+    rows = [f"{t:.6g},0,0,{0.05 + 0.002 * row}" for row, t in enumerate(times)]
+    (tmp_path / "log.csv").write_text("\n".join(["t_s,p_rad_s,q_rad_s,r_rad_s", *rows, ""]))
+    args = ("--gap", "split", "--limits", "warn", "--no-plots", "-o", "all")
+    result = invoke("reduce", "log.csv", "--grid", "ends=free,match-start", *args)
+    assert result.exit_code == 0, result.stderr
+    assert {path.name for path in (tmp_path / "all").iterdir() if path.is_dir()} == {
+        f"log__ends_{ends}-{part}" for ends in ("free", "match-start") for part in (1, 2)
+    }
 
 
 @pytest.mark.slow
