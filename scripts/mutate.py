@@ -22,6 +22,7 @@ import os
 import pkgutil
 import random
 import resource
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -261,22 +262,29 @@ def survived(status: int) -> bool:
     return code == PASSED
 
 
-def run(mutants: list[Mutant], jobs: int) -> list[Mutant]:
-    """Return the mutants that survive, and say them as they do."""
+def run(mutants: list[Mutant], jobs: int) -> tuple[int, list[Mutant]]:
+    """Return how many mutants were tried and those that survive, and say them as they do.
+
+    An interrupt ends it early: the first of a random sample are one too.
+    """
     _, status = os.waitpid(start(None), 0)
     assert survived(status), "the tests fail without any fault"
     running: dict[int, Mutant] = {}
     waiting, alive = list(reversed(mutants)), []
-    while waiting or running:
-        while waiting and len(running) < jobs:
-            mutant = waiting.pop()
-            running[start(mutant)] = mutant
-        process, status = os.wait()
-        mutant = running.pop(process)
-        if survived(status):
-            alive.append(mutant)
-            print(f"survived: {mutant}", flush=True)
-    return alive
+    try:
+        while waiting or running:
+            while waiting and len(running) < jobs:
+                mutant = waiting.pop()
+                running[start(mutant)] = mutant
+            process, status = os.wait()
+            mutant = running.pop(process)
+            if survived(status):
+                alive.append(mutant)
+                print(f"survived: {mutant}", flush=True)
+    except KeyboardInterrupt:
+        for process in running:
+            os.kill(process, signal.SIGKILL)
+    return len(mutants) - len(waiting) - len(running), alive
 
 
 def main() -> int:
@@ -296,9 +304,9 @@ def main() -> int:
     total = len(mutants)
     if options.count and options.count < total:
         mutants = random.Random(options.seed).sample(mutants, options.count)
-    alive = run(mutants, options.jobs)
-    score = 1.0 - len(alive) / len(mutants)
-    print(f"{len(mutants)} of {total} mutants, {len(alive)} survived: {100.0 * score:.1f} %")
+    tried, alive = run(mutants, options.jobs)
+    score = 1.0 - len(alive) / max(tried, 1)
+    print(f"{tried} of {total} mutants, {len(alive)} survived: {100.0 * score:.1f} %")
     return int(score < LEAST_SCORE)
 
 
