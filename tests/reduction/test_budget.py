@@ -203,7 +203,12 @@ def test_a_finer_grid_starts_from_a_coarser_one(posed_cobra, table_1, jerk):
     # Rows of jerk divide rounding by the square of the step: the conditions are met to
     # 1e-7 and not to 1e-9 here, and the costs agree accordingly, on any kernel.
     assert solution.usable if jerk else solution.converged
-    assert solution.cost == pytest.approx(alone.cost, rel=1e-7 if jerk else 1e-9)
+    if jerk:
+        # The search from far away ends there with two threads of BLAS on a Zen kernel, with
+        # Haswell's and Prescott's; with one thread on Zen it runs away, at any cost.
+        assert solution.cost == pytest.approx(0.6274933353, rel=1e-7)
+    if alone.status in ("converged", "acceptable") or not jerk:
+        assert solution.cost == pytest.approx(alone.cost, rel=1e-7 if jerk else 1e-9)
 
 
 def test_jerk_limits_are_kept_and_used(posed_cobra, table_1):
