@@ -100,6 +100,12 @@ def test_half_a_turn_about_any_axis_is_half_a_turn() -> None:
     np.testing.assert_allclose(found, 180.0, atol=1e-5)
 
 
+@pytest.mark.parametrize("metric", [G, RATIO, "joint_deviation_relative"])
+def test_what_is_no_peak_has_no_values_at_states(metric: str) -> None:
+    with pytest.raises(ValueError, match="no largest value"):
+        at_states(CLAIM, metric, CLAIM.before)
+
+
 def test_every_metric_is_known_to_the_verification() -> None:
     assert set(INTEGRALS) | PEAK_METRICS | {"mean_square_one_minus_p"} == set(METRICS)
     assert not set(INTEGRALS) & PEAK_METRICS

@@ -20,7 +20,7 @@ from des_cli.reduction.problem import Problem
 from des_cli.reduction.solve import solve
 from des_cli.reduction.study_law import sweep
 from des_cli.verify.budgets import measure
-from des_cli.verify.factors_optimality import check_optimality
+from des_cli.verify.factors_optimality import _now_or_later, check_optimality
 from tests.reduction.conftest import make_problem, make_wave
 from tests.support.claims import claim_of_factors, failed_of_factors, remade
 from tests.support.free_case import with_rates
@@ -258,6 +258,12 @@ def test_an_angle_at_its_limit_holds_what_comes_before_it(first: float, held: bo
     machine = bounded(angle=1.0 + 1e-4)
     problem = make_problem(motion, 1e-2, axes="seat", r1=(2, 2, 2), machine=machine)
     assert (slope_of(problem, np.ones((41, 1))) == 0.0) is held
+
+
+def test_what_comes_before_is_each_sample_up_to_the_last_that_is_tight() -> None:
+    tight = np.array([[0, 1, 0, 0, 0], [0, 0, 0, 0, 0], [1, 0, 0, 1, 0]], dtype=bool).T
+    before = np.array([[1, 1, 0, 0, 0], [0, 0, 0, 0, 0], [1, 1, 1, 1, 0]], dtype=bool).T
+    np.testing.assert_array_equal(_now_or_later(tight), before)
 
 
 @pytest.mark.parametrize(("share", "held"), [(1.0 - 5e-4, True), (1.0 - 2e-3, False)])
