@@ -53,7 +53,10 @@ COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Is: ast.IsNot,
     ast.IsNot: ast.Is,
 }
-CONVERSIONS = {"np.asarray", "float", "int", "bool", "str", "tuple", "list", "MappingProxyType"}
+CONVERSIONS = {
+    *("np.asarray", "np.array", "MappingProxyType"),
+    *("float", "int", "bool", "str", "tuple", "list"),
+}
 """Calls that change a type and no value: without them the tests see the same."""
 
 TINY = 1e-200
