@@ -313,3 +313,14 @@ def test_a_long_table_has_fewer_directions_and_enough_of_them() -> None:
     metric = "mean_square_one_minus_p"
     budget = (Budget(metric, measure(claim, metric, claim.after)),)
     assert slope_of(problem, factors, budget) > 1e-3
+
+
+def test_a_joint_that_stands_still_between_fixed_ends_moves_no_other() -> None:
+    """No factor of its own moves it, so that there is nothing to take back."""
+    motion = straight(0.5)
+    rate = motion.rate_start * [1.0, 1.0, 0.0]
+    still = replace(motion, angle=motion.angle * [1.0, 1.0, 0.0], rate_start=rate, rate_end=rate)
+    problem = make_problem(
+        still, 1.0, control="per-joint", axes="seat", r1=(2, 2, 2), ends="match-both"
+    )
+    assert np.isfinite(slope_of(problem, np.ones((41, 3))))
