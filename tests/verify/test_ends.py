@@ -349,3 +349,19 @@ def test_every_check_of_this_module_is_one_of_the_verifications() -> None:
     own_keys = {"samples.times", "dynamics.angles", "dynamics.rates", "hold", "hold.rate"}
     assert own_keys | ENDS["match-both"] <= set(found)
     assert found["dynamics.rates"] == pytest.approx(0.05)
+
+
+@pytest.mark.parametrize(("share", "seen"), [(0.9e-6, False), (1.1e-6, True)])
+def test_a_factor_means_something_from_a_millionth_of_a_joints_largest_rate(
+    share: float, seen: bool
+) -> None:
+    """Of a rate of 1e4 rad/s; factors of two are told where it is doubled but in one place."""
+    rates = np.full((5, 3), 1e4)
+    rates[2, 1] = share * 1e4
+    desired = with_rates(np.arange(5.0), np.zeros(3), rates)
+    doubled = 2.0 * rates
+    doubled[2, 1] += 1e-3
+    modified = with_rates(np.arange(5.0), np.zeros(3), doubled)
+    claim = claim_of(modified, requested=desired, factors=np.full((5, 3), 2.0))
+    (check,) = check_factors(claim)
+    assert check.value == pytest.approx(1e-3 if seen else 0.0, abs=1e-9)

@@ -88,7 +88,10 @@ def test_what_is_told_is_beside_what_is_found() -> None:
 
 @pytest.mark.parametrize(
     ("side", "row", "share"),
-    [("start", 0, 1.0), ("end", -1, 1.0), ("start", 2, 0.5), ("end", 1, 0.5)],
+    [
+        *(("start", 0, 1.0), ("start", 1, 0.5), ("start", 2, 0.5)),
+        *(("end", -1, 1.0), ("end", -2, 0.5), ("end", 1, 0.5)),
+    ],
 )
 def test_a_rate_that_is_missed_counts_as_the_mean_of_its_sides(
     side: str, row: int, share: float

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -78,6 +79,13 @@ def test_what_is_told_is_what_the_motion_does(claim: Claim) -> None:
     ]
     assert all(check.value < 1e-9 for check in checks), checks
     assert all(check.value < 1e-11 for check in checks[:-1]), checks
+
+
+def test_what_is_told_is_verified_where_something_is(claim: Claim) -> None:
+    assert claim.told is not None
+    keys = {check.key for check in check_told(claim, claim.told)}
+    assert keys <= {check.key for check in verify(claim)}
+    assert not keys & {check.key for check in verify(replace(claim, told=None))}
 
 
 def test_every_number_that_is_off_is_found(claim: Claim, monkeypatch: pytest.MonkeyPatch) -> None:
