@@ -11,6 +11,8 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.machinery import ExtensionFileLoader
+from types import FrameType
 from typing import Any
 
 from des_cli.errors import ExitCode, Stopped
@@ -29,7 +31,7 @@ _raised: list[ExitCode] = []
 """What was raised in this process."""
 
 _AGAIN_S = 0.01
-"""After which time an exception that was lost is raised again."""
+"""After which time a signal is sent again whose exception was, or would be, lost."""
 
 
 def die_at_once() -> None:
@@ -70,12 +72,14 @@ def hear(when: Callable[[], bool] = lambda: True) -> list[signal.Signals]:
     """
     stopped = False
 
-    def stop(number: int, _: object) -> None:
+    def stop(number: int, frame: FrameType | None) -> None:
         nonlocal stopped
         code = _CODES[signal.Signals(number)]
         if not when():
             os._exit(code)
-        if not stopped:
+        if not stopped and _loads_compiled_code(frame):
+            _send_again(number)
+        elif not stopped:
             stopped = True
             _raised.append(code)
             raise Stopped(code)
@@ -90,7 +94,7 @@ def hear(when: Callable[[], bool] = lambda: True) -> list[signal.Signals]:
         _raised.clear()
         number = next(each for each in heard if _CODES[each] == code)
         stopped = False
-        threading.Timer(_AGAIN_S, os.kill, (os.getpid(), number)).start()
+        _send_again(number)
 
     heard = [number for number in _CODES if _is_heard(number)]
     sys.unraisablehook = again
@@ -102,8 +106,8 @@ def hear(when: Callable[[], bool] = lambda: True) -> list[signal.Signals]:
 def cause_of(error: BaseException) -> BaseException:
     """Return an error, or `Stopped` where it came of that.
 
-    A module of compiled code that is being loaded says ``ImportError: initialization
-    failed`` of whatever is raised meanwhile.
+    What was raised in code that makes another error of it, such as an ``ImportError``, is
+    found again.
     """
     return error if not _raised or isinstance(error, Stopped) else Stopped(_raised[0])
 
@@ -132,6 +136,25 @@ def disturbed() -> None:
     """Hear what was kept waiting by the process that started this one."""
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, _CODES)
+
+
+def _loads_compiled_code(frame: FrameType | None) -> bool:
+    """Tell whether a module of compiled code is being loaded.
+
+    It makes ``ImportError: initialization failed`` of whatever is raised meanwhile, or, as
+    Cython does where it registers its types, nothing at all.
+    """
+    while frame is not None:
+        loads = frame.f_code.co_name in ("create_module", "exec_module")
+        if loads and isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _send_again(number: int) -> None:
+    with undisturbed():  # a thread that hears it would have this one disturbed at any time
+        threading.Timer(_AGAIN_S, os.kill, (os.getpid(), number)).start()
 
 
 def _is_heard(number: signal.Signals) -> bool:

@@ -130,3 +130,73 @@ def test_an_error_that_came_of_a_signal_is_the_signal(
         [sys.executable, "-c", LOST], cwd=tmp_path, env=python_environment, check=False
     )
     assert done.returncode == 143
+
+
+# Cython does so while it loads a module, where it registers its types.
+SWALLOWED = """
+import os, signal, sys, time
+from importlib.machinery import ExtensionFileLoader
+from des_cli.errors import Stopped
+from des_cli.signals import stopping
+
+class Swallowing(ExtensionFileLoader):
+    def exec_module(self, module):
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(0.05)
+        except BaseException:
+            pass
+
+with stopping():
+    try:
+        Swallowing("name", "path").exec_module(None)
+        time.sleep(5)
+    except Stopped as stop:
+        sys.exit(int(stop.exit_code))
+"""
+
+
+def test_a_signal_is_not_lost_in_compiled_code_that_is_being_loaded(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", SWALLOWED], cwd=tmp_path, env=python_environment, check=False
+    )
+    assert done.returncode == 143
+
+
+# The thread that awaits the end of the parent sends the worker a signal of its own.
+WORKER = """
+import os, signal, sys, threading, time
+from multiprocessing import Pipe
+from des_cli.batch import worker
+from des_cli.signals import undisturbed
+
+def work():
+    try:
+        with undisturbed():
+            ours.close()
+            deadline = time.monotonic() + 0.3
+            while time.monotonic() < deadline:
+                pass
+            print("whole", flush=True)
+    finally:
+        print("put away", flush=True)
+
+theirs, ours = Pipe(duplex=False)
+worker.begin(os.getppid(), theirs)
+worker.do(work)
+"""
+
+
+def test_what_a_worker_does_undisturbed_is_done(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", WORKER],
+        stdout=subprocess.PIPE,
+        cwd=tmp_path,
+        env=python_environment,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (1, b"whole\nput away\n")

@@ -15,7 +15,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any, NoReturn, TypeVar
 
-from des_cli.signals import disturbed, hear
+from des_cli.signals import disturbed, hear, undisturbed
 
 T = TypeVar("T")
 
@@ -42,7 +42,9 @@ def begin(parent: int, parent_pipe: Connection) -> None:
     hear(lambda: _at_work)
     disturbed()
     _die_with(parent)
-    threading.Thread(target=_await_end, args=(parent_pipe,), daemon=True).start()
+    waiting = threading.Thread(target=_await_end, args=(parent_pipe,), daemon=True)
+    with undisturbed():  # what this thread keeps waiting would come through that one
+        waiting.start()
 
 
 def do(work: Callable[..., T], *args: Any) -> T:

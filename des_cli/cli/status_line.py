@@ -15,6 +15,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TextIO
 
 from des_cli.cli.terminal import printable
+from des_cli.signals import undisturbed
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -75,7 +76,8 @@ class StatusLine:
         self._began = self._clock()
         self._ends[0] = self._began
         if self._stream is not None:
-            self._thread.start()
+            with undisturbed():  # what is kept waiting would come through this thread
+                self._thread.start()
         return self
 
     def __exit__(
