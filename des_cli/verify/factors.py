@@ -76,7 +76,7 @@ def check_cost(claim: Claim, problem: Problem) -> list[Check]:
         ),
     ):
         found = cost_of(claim, problem, control, felt)
-        error = abs(told - found) / max(abs(told), least)
+        error = abs(told - found) / max(found, least)
         checks.append(Check(key, f"relative error of the cost{name}", error, COST_TOLERANCE))
     if claim.reduction.algorithm == "optimum" and claim.reduction.method == "minimum":
         rise = (solution.cost - solution.cost_unreduced) / max(solution.cost_unreduced, least)
@@ -152,5 +152,8 @@ def _adapted_gap(
 def jacobian(chain: SeatChain, angle: Floats) -> Floats:
     """Return W along ground axes per unit rate of each joint, (n, 3, 3 joint)."""
     zero = np.zeros_like(angle)
-    columns = [chain.at(angle, zero + unit, zero).rate_ground for unit in np.eye(len(JOINTS))]
+    columns = [
+        chain.at(angle, np.broadcast_to(unit, angle.shape), zero).rate_ground
+        for unit in np.eye(len(JOINTS))
+    ]
     return np.stack(columns, axis=-1).swapaxes(0, 1)

@@ -57,7 +57,7 @@ def check_cost(claim: Claim) -> list[Check]:
         ),
     ):
         found = 0.5 * float(claim.weight @ _weighted(claim.reduction, felt))
-        error = abs(told - found) / max(abs(found), least)
+        error = abs(told - found) / max(found, least)
         checks.append(Check(key, name, error, COST_TOLERANCE))
     reduced = claim.reduced
     if _desired_is_allowed(reduced):
