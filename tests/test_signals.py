@@ -102,6 +102,13 @@ main()
     assert (process.returncode, words) == (-signal.SIGINT, b"")
 
 
+def code_of(script: str, folder: Path, environment: dict[str, str]) -> int:
+    """The exit code of a script."""
+    return subprocess.run(
+        [sys.executable, "-c", script], cwd=folder, env=environment, check=False
+    ).returncode
+
+
 # The signal comes while something is done that makes another error of whatever is raised.
 LOST = """
 import os, signal, sys
@@ -126,10 +133,7 @@ with stopping():
 def test_an_error_that_came_of_a_signal_is_the_signal(
     tmp_path: Path, python_environment: dict[str, str]
 ) -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", LOST], cwd=tmp_path, env=python_environment, check=False
-    )
-    assert done.returncode == 143
+    assert code_of(LOST, tmp_path, python_environment) == 143
 
 
 # Cython does so while it loads a module, where it registers its types.
@@ -159,10 +163,7 @@ with stopping():
 def test_a_signal_is_not_lost_in_compiled_code_that_is_being_loaded(
     tmp_path: Path, python_environment: dict[str, str]
 ) -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", SWALLOWED], cwd=tmp_path, env=python_environment, check=False
-    )
-    assert done.returncode == 143
+    assert code_of(SWALLOWED, tmp_path, python_environment) == 143
 
 
 # The thread that awaits the end of the parent sends the worker a signal of its own.

@@ -182,6 +182,17 @@ def test_on_uneven_steps_a_bump_still_ends_where_it_began():
         assert abs(d.angle[-1]) < 1e-15
 
 
+def fork_within_rate(t, rate):
+    """The fork alone moves, and is free where its rate is below its limit of 1 rad/s."""
+    return claim_of(
+        motion_of(t, np.outer(rate, [0.0, 1.0, 0.0])),
+        machine=machine_with(1, rate=1.0),
+        limits="enforce",
+        ends="match-both",
+        hold=frozenset({"arm", "cab"}),
+    )
+
+
 @pytest.mark.parametrize(
     ("free", "long", "short"),
     # of 12 s: lengths of a fifth and a twelfth, 2.4 s and 1 s
@@ -190,14 +201,7 @@ def test_on_uneven_steps_a_bump_still_ends_where_it_began():
 def test_a_stretch_has_windows_by_its_length(free, long, short):
     t = np.linspace(0.0, 12.0, 1201)
     rate = np.where(t < free + 0.05, 0.5, 1.0)
-    claim = claim_of(
-        motion_of(t, np.outer(rate, [0.0, 1.0, 0.0])),
-        machine=machine_with(1, rate=1.0),
-        limits="enforce",
-        ends="match-both",
-        hold=frozenset({"arm", "cab"}),
-    )
-    found = windows_of(t, claim)
+    found = windows_of(t, fork_within_rate(t, rate))
     lengths = np.array([end - begin for *_, begin, end in found])
     assert len(found) == long + short
     for of, count, share in ((lengths[:long], long, 2.4), (lengths[long:], short, 1.0)):
@@ -224,14 +228,7 @@ def test_the_longest_windows_are_taken():
     """Of two stretches the first has 0.6 s, the other all that four windows need."""
     t = FINE
     rate = np.where((t >= 0.65) & (t <= 1.0), 1.0, 0.5)
-    claim = claim_of(
-        motion_of(t, np.outer(rate, [0.0, 1.0, 0.0])),
-        machine=machine_with(1, rate=1.0),
-        limits="enforce",
-        ends="match-both",
-        hold=frozenset({"arm", "cab"}),
-    )
-    found = windows_of(t, claim)
+    found = windows_of(t, fork_within_rate(t, rate))
     assert len(found) == 8
     assert min(w[2] for w in found) == pytest.approx(1.045, abs=1e-9)
 
