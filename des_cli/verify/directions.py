@@ -37,7 +37,7 @@ point of a spline holds what is beside it."""
 
 SHORTEST, FEWEST = 0.3, 14
 """Shortest window [s] and the least number of its intervals: a bump must be smooth for
-whoever has knots of 20 ms, or none between the samples."""
+whoever has knots of 40 ms, or none between the samples."""
 
 SHARES = (1 / 5, 1 / 12)
 """Longest windows of the two kinds, as shares of the motion."""

@@ -17,6 +17,7 @@ from des_cli.reduction.executable import (
     CLEAR,
     FEWEST_KNOTS,
     KNOT_STEP,
+    LONGEST_KNOT_STEP,
     TAU,
     fit_executable,
     integrate_rates,
@@ -290,6 +291,11 @@ class TestKnots:
         assert knot_grid(np.linspace(0.0, 10.0, 41)).intervals == 40
         assert knot_grid(np.linspace(0.0, 10.0, 3)).intervals == 3  # the fewest of a spline
 
+    def test_those_of_a_long_motion_stand_farther_apart(self):
+        for duration, step in ((30.0, KNOT_STEP), (60.0, 0.06), (2000.0, LONGEST_KNOT_STEP)):
+            grid = knot_grid(np.linspace(0.0, duration, 100_001))
+            assert grid.step == pytest.approx(step, rel=1e-9)
+
     def test_a_short_motion_has_some_all_the_same(self):
         assert knot_grid(np.linspace(0.0, 0.1, 1001)).intervals == FEWEST_KNOTS
 
@@ -297,5 +303,6 @@ class TestKnots:
     def test_a_multiple(self, multiple):
         grid = knot_grid(np.linspace(0.0, 9.98, 1000), multiple)
         assert grid.intervals % multiple == 0
-        assert 499 <= grid.intervals < 499 + multiple
+        needed = int(np.ceil(9.98 / KNOT_STEP))
+        assert needed <= grid.intervals < needed + multiple
         assert grid.duration == pytest.approx(9.98)

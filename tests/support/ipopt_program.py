@@ -84,7 +84,8 @@ def _reference_seat(task: Task) -> tuple[Floats, ...]:
 class _Interval:
     """One interval's shares of the sums, what is bounded at its points, and their derivatives.
 
-    At the points: two squared attitude errors, then two squared angular accelerations.
+    Bounded: two squared attitude errors at the points, then two squared angular accelerations
+    at the interval's ends, by the straight line through those at the points.
 
     Unknowns: 12 coordinates of its control points, point after point, then the seat's yaw
     and pitch where these are free. Data: 2 x (theta, W, c, dW, G, R) of the reference.
@@ -117,8 +118,14 @@ def _interval(task: Task, h: float, size: int) -> _Interval:
             ca.sumsqr(dw),
         )
         apart.append(ca.sumsqr(ca.vec(attitude) - r0))
-        turnings.append(ca.sumsqr(dw))
-    outputs = ca.vertcat(sums, *apart, *turnings)
+        turnings.append(dw)
+    # the straight line through both points, at both ends of the interval
+    beyond = (math.sqrt(3) - 1) / 2
+    ends = [
+        ca.sumsqr((1 + beyond) * near - beyond * far)
+        for near, far in (turnings, reversed(turnings))
+    ]
+    outputs = ca.vertcat(sums, *apart, *ends)
     hessian, _ = ca.hessian(ca.dot(weights, outputs), unknowns)
     return _Interval(
         ca.Function("value", [unknowns, data], [ca.cse(outputs)]),

@@ -66,8 +66,6 @@ class Chunk:
         self.turned = [turn.of(seat) for turn in turns]
         self.slopes: list[ScaledSlope] = []
         self.multipliers: dict[Quantity, Floats] = {}
-        m = seat.rate.shape[1]
-        self.across = np.zeros((len(turns), VARIABLES, m))  # by the seat's angles and these
 
     def take(self, term: Term, factor: float, gradient: Floats) -> float:
         """Add a term's gradient, and its Hessian times a factor; return its value."""
@@ -130,7 +128,7 @@ class Chunk:
             return value.reshape(-1)
         windows, by_seat = self.unknowns.seat_windows, self._by_seat(bound, value.shape)
         self.total.keep(rows, windows, slope, by_seat, self.first)
-        if isinstance(bound, OnsetBound):
+        if isinstance(bound, OnsetBound | NormBound):
             self._add_interval_squares(slope, by_seat, stiffness)
         else:
             root = np.sqrt(stiffness)
@@ -138,7 +136,7 @@ class Chunk:
         if isinstance(bound, ComponentBound | OnsetBound):
             self._add_multiplier("force", bound.force_multiplier(multiplier))
         elif isinstance(bound, NormBound):
-            self._add_length(bound, multiplier[0])
+            self._add_length(bound, multiplier)
         return value.reshape(-1)
 
     def finish(self) -> None:
@@ -149,7 +147,6 @@ class Chunk:
                 self.first,
                 self.slopes,
                 curvature_of(self.seat, self.multipliers),
-                self.across,
                 self._seat_curvature(),
             )
         )
@@ -158,26 +155,30 @@ class Chunk:
         known = self.multipliers.get(quantity)
         self.multipliers[quantity] = multiplier if known is None else known + multiplier
 
-    def _add_interval_squares(self, slope: Floats, by_seat: Floats, stiffness: Floats) -> None:
-        """Add the squares of rows that belong to both points of an interval."""
+    def _add_interval_squares(
+        self, slope: Floats, by_seat: Floats, weight: Floats, *, curvature: bool = False
+    ) -> None:
+        """Add weighted squares of rows that belong to both points of an interval."""
         windows = self.unknowns.seat_windows
+        across = np.zeros((len(self.turns), VARIABLES, slope.shape[-1]))
         if self.turns:
-            stiff = slope * np.tile(stiffness, (1, POINTS))
-            both = np.tile(by_seat, (1, 1, POINTS))
-            self.across += np.einsum("krm,srm->skm", stiff, both)
-        corner = np.einsum("srm,trm,rm->st", by_seat, by_seat, stiffness)
-        scaled = np.sqrt(stiffness) * windows.to_window(slope)
-        self.total.parts.append(IntervalSquares(windows, self.first, scaled, corner))
+            weighted = by_seat * weight
+            both = np.tile(weighted, (1, 1, POINTS))
+            across[:, : len(slope)] = np.einsum("krm,srm->skm", slope, both)
+        corner = np.einsum("srm,trm,rm->st", by_seat, by_seat, weight)
+        scaled = np.sqrt(weight) * windows.to_window(slope)
+        self.total.parts.append(
+            IntervalSquares(windows, self.first, scaled, across, corner, curvature)
+        )
 
     def _add_length(self, bound: NormBound, multiplier: Floats) -> None:
         """Add the curvature of a bound on a length: a square's, and the quantity's own."""
-        weight = 2.0 * multiplier / bound.bound**2
-        self._add_multiplier(bound.quantity, weight * value_of(self.seat, bound.quantity))
-        by_seat = np.zeros((len(self.turns), 3, len(weight)))
+        self._add_multiplier(bound.quantity, bound.multiplier(self.seat, multiplier))
+        weight = np.repeat(bound.weight(multiplier), 3, axis=0)
+        by_seat = np.zeros((len(self.turns), *weight.shape))
         for s, turned in enumerate(self.turned):
-            by_seat[s] = _turned_value(self.seat, turned, bound.quantity)
-        slope = slope_of(self.seat, bound.quantity)
-        self.slopes.append(ScaledSlope(slope, by_seat, weight))
+            by_seat[s] = bound.along(_turned_value(self.seat, turned, bound.quantity))
+        self._add_interval_squares(bound.parts(self.seat), by_seat, weight, curvature=True)
 
     def _by_seat(self, bound: LocalBound, shape: tuple[int, ...]) -> Floats:
         """Return the derivatives of a bound's rows by the seat's angles, (s, r, m)."""
@@ -186,9 +187,9 @@ class Chunk:
             if isinstance(bound, ComponentBound | OnsetBound):
                 by_seat[s] = bound.along(mixed_force(self.seat, turned))
             elif isinstance(bound, NormBound):
-                change = _turned_value(self.seat, turned, bound.quantity)
-                along = np.sum(change * value_of(self.seat, bound.quantity), axis=0)
-                by_seat[s] = 2.0 / bound.bound**2 * along
+                by_seat[s] = bound.turned(
+                    self.seat, _turned_value(self.seat, turned, bound.quantity)
+                )
         return by_seat
 
     def _seat_curvature(self) -> SeatCurvature:

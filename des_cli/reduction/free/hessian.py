@@ -126,24 +126,35 @@ class IntervalSquares:
         The span's first interval.
     slope : (12, r, count) array
         By the coordinates of each interval's window, scaled.
+    across : (s, v, m) array
+        Products with the derivatives by the seat's angles, by the local variables of the points.
     corner : (s, s) array
         Squares of the same by the seat's angles.
+    curvature : bool
+        Whether they belong to the curvature, and count by its share.
     """
 
     windows: Windows
     first: int
     slope: Floats
+    across: Floats
     corner: Floats
+    curvature: bool = False
 
     def add_to(self, hessian: BorderedBand, share: float) -> None:
         """Add them; they are convex."""
-        self.windows.scatter_squares(self.slope, self.first, hessian.band)
-        hessian.corner[:] += self.corner
+        counted = share if self.curvature else 1.0
+        if not counted:
+            return
+        self.windows.scatter_squares(np.sqrt(counted) * self.slope, self.first, hessian.band)
+        hessian.corner[:] += counted * self.corner
+        for s, each in enumerate(self.across):
+            self.windows.scatter(counted * each, self.first, hessian.border[s].reshape(-1, JOINTS))
 
 
 @dataclass(frozen=True, eq=False)
 class ScaledSlope:
-    """Derivatives of r residuals whose squares belong to the Hessian.
+    """Derivatives of r residuals whose squares belong to the Hessian, scaled.
 
     Parameters
     ----------
@@ -151,21 +162,10 @@ class ScaledSlope:
         By the first v local variables of m points.
     by_seat : (s, r, m) array
         By the seat's free angles.
-    weight : (m,) array, optional
-        Where the squares are curvature, the weight of these at its full share; without
-        one the derivatives are scaled already.
     """
 
     slope: Floats
     by_seat: Floats
-    weight: Floats | None = None
-
-    def at(self, share: float) -> tuple[Floats, Floats]:
-        """Return both, scaled for a share of the curvature."""
-        if self.weight is None:
-            return self.slope, self.by_seat
-        root = np.sqrt(share * self.weight)
-        return root * self.slope, root * self.by_seat
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,8 +196,6 @@ class SeatBlocks:
         What the convex part is made of.
     curvature : (36, m) array
         Upper triangle.
-    across : (s, 8, m) array
-        Derivatives by the seat's angles and the local variables that come first.
     by_seat : SeatCurvature
     """
 
@@ -207,50 +205,36 @@ class SeatBlocks:
         first: int,
         slopes: Sequence[ScaledSlope],
         curvature: Floats,
-        across: Floats,
         by_seat: SeatCurvature,
     ) -> None:
         self._windows, self._first = windows, first
-        self._curvature, self._across, self._by_seat = curvature, across, by_seat
-        self._convex: Floats | None = None
-        self._slopes: Sequence[ScaledSlope] = slopes
-        if all(each.weight is None for each in slopes):
-            self._convex = self._squares([each.slope for each in slopes])
-            if not len(across):
-                self._slopes = ()  # nothing more is made of them
-
-    def _squares(self, slopes: list[Floats]) -> Floats:
-        """Return the sum of squares, (36, m)."""
-        if slopes:
-            return squares(slopes)
-        return np.zeros((VARIABLES * (VARIABLES + 1) // 2, self._across.shape[2]))
+        self._curvature, self._by_seat = curvature, by_seat
+        alone = [each.slope for each in slopes]
+        self._convex = squares(alone) if alone else np.zeros_like(curvature)
+        # of what the seat's angles have no part in nothing more is made
+        self._slopes = [each for each in slopes if len(each.by_seat)]
 
     def add_to(self, hessian: BorderedBand, share: float) -> None:
         """Add them by the control points and the seat's angles."""
-        slopes = [s.at(share) for s in self._slopes if share > 0.0 or s.weight is None]
         blocks = self._convex
-        if blocks is None:
-            blocks = self._squares([slope for slope, _ in slopes])
         if share > 0.0:
             blocks = blocks + share * self._curvature
         self._windows.scatter_hessian(blocks, self._first, hessian.band)
-        if len(self._across):
-            self._add_border(hessian, slopes, share)
+        if len(hessian.corner):
+            self._add_border(hessian, share)
 
-    def _add_border(
-        self, hessian: BorderedBand, slopes: list[tuple[Floats, Floats]], share: float
-    ) -> None:
-        across = self._across.copy()
-        for slope, by_seat in slopes:
-            across[:, : len(slope)] += np.einsum("krm,srm->skm", slope, by_seat)
-            hessian.corner[:] += np.einsum("srm,trm->st", by_seat, by_seat)
+    def _add_border(self, hessian: BorderedBand, share: float) -> None:
+        across = np.zeros((len(hessian.corner), VARIABLES, self._curvature.shape[1]))
+        for each in self._slopes:
+            across[:, : len(each.slope)] += np.einsum("krm,srm->skm", each.slope, each.by_seat)
+            hessian.corner[:] += np.einsum("srm,trm->st", each.by_seat, each.by_seat)
         if share > 0.0:
-            for s, each in self._by_seat.across:
-                across[s, : len(each)] += share * each
+            for s, by_angle in self._by_seat.across:
+                across[s, : len(by_angle)] += share * by_angle
             for s, t, amount in self._by_seat.corner:
                 hessian.corner[s, t] += share * amount
                 if s != t:
                     hessian.corner[t, s] += share * amount
-        for s, each in enumerate(across):
+        for s, each_angle in enumerate(across):
             column = hessian.border[s].reshape(-1, JOINTS)
-            self._windows.scatter(each, self._first, column)
+            self._windows.scatter(each_angle, self._first, column)

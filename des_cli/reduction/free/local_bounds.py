@@ -1,7 +1,8 @@
-"""Bounds on what is felt at each point of a free motion: one row a point, at most one.
+"""Bounds on what is felt all along a free motion: rows that are at most one.
 
-Budgets are integrals; these hold at every point. Each kind gives its rows' values and
-their derivatives by the local variables of the points, and the Lagrangian's curvature.
+Budgets are integrals; these hold at every point, or at both ends of every interval. Each
+kind gives its rows' values and their derivatives by the local variables of the points, and
+what its multipliers make of the Lagrangian's curvature.
 """
 
 from __future__ import annotations
@@ -14,24 +15,26 @@ import numpy as np
 from des_cli.kinematics.trig_polynomial import TrigPolynomial
 from des_cli.kinematics.twist import VARIABLES, SeatMotion
 from des_cli.model.arrays import Floats
-from des_cli.reduction.free.terms import Quantity, curvature_of, slope_of, value_of
+from des_cli.reduction.free.terms import Quantity, slope_of, value_of
+from des_cli.solver.spline import GAUSS
+
+TO_ENDS = 0.5 * np.array([[1.0 + np.sqrt(3.0), 1.0 - np.sqrt(3.0)]] * 2)
+TO_ENDS[1] = TO_ENDS[1, ::-1]
+"""What of its values at the two points of an interval a straight line has at either end."""
 
 
 class LocalBound(Protocol):
-    """A bound with some rows at each point."""
+    """A bound with some rows at each point, or on each interval."""
 
     @property
     def rows(self) -> int:
-        """Rows at each point."""
+        """Rows at each point, or on each interval."""
 
     def value(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
-        """Return the values, (rows, m), of points with joint angles (3, m)."""
+        """Return the values, (rows, m or count), of points with joint angles (3, m)."""
 
     def slope(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
-        """Return the derivatives by the variables, (v, rows, m)."""
-
-    def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
-        """Return the second derivatives times multipliers (rows, m), (v (v + 1) / 2, m)."""
+        """Return the derivatives by the variables of each point, (v, rows, m)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,10 +69,6 @@ class ComponentBound:
         """Return the derivatives by the variables, (8, rows, m)."""
         return np.asarray((self.direction / self.scale[:, None]) @ seat.force_slope)
 
-    def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
-        """Return the second derivatives times multipliers, (36, m)."""
-        return curvature_of(seat, {"force": self.force_multiplier(multiplier)})
-
     def force_multiplier(self, multiplier: Floats) -> Floats:
         """Return the force's multipliers, (3, m), of the rows', (rows, m)."""
         return np.asarray((self.direction / self.scale[:, None]).T @ multiplier)
@@ -81,7 +80,12 @@ class ComponentBound:
 
 @dataclass(frozen=True, eq=False)
 class NormBound:
-    """A bound on the length of a quantity: ``|value|^2 / bound^2``.
+    """A bound on the length of a quantity at both ends of each interval: ``|value|^2 / bound^2``.
+
+    A joint's acceleration is linear over an interval and has its corners at the knots, so that
+    what it makes is largest there. The value at an end is that of the straight line through
+    those at the interval's two points, which for the total angular acceleration is off by a
+    twelfth of the squared step times its second derivative.
 
     Parameters
     ----------
@@ -92,32 +96,49 @@ class NormBound:
 
     quantity: Quantity
     bound: float
-    rows: int = 1
+    rows: int = len(GAUSS)
 
     def value(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
-        """Return the values, (1, m)."""
-        return np.asarray(np.sum(value_of(seat, self.quantity) ** 2, axis=0)[None] / self.bound**2)
+        """Return the values, (2, count)."""
+        ends = at_ends(value_of(seat, self.quantity))
+        return np.asarray(np.sum(ends**2, axis=1) / self.bound**2)
 
     def slope(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
-        """Return the derivatives by the variables, (8, 1, m)."""
+        """Return the derivatives by the variables of both points, (8, 2, 2 count)."""
         by = slope_of(seat, self.quantity)
-        slope = np.zeros((VARIABLES, 1, by.shape[-1]))
-        slope[: len(by), 0] = np.einsum("kcm,cm->km", by, value_of(seat, self.quantity))
-        return slope * (2.0 / self.bound**2)
+        ends = at_ends(value_of(seat, self.quantity))
+        slope = np.zeros((VARIABLES, self.rows, by.shape[-1]))
+        for end, row in enumerate(TO_ENDS):
+            value = np.concatenate([share * ends[end] for share in row], axis=1)
+            np.einsum("kcm,cm->km", by, value, out=slope[: len(by), end])
+        slope *= 2.0 / self.bound**2
+        return slope
 
-    def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
-        """Return the second derivatives times multipliers, (36, m)."""
-        weight = 2.0 * multiplier / self.bound**2
-        hessian = curvature_of(seat, {self.quantity: weight * value_of(seat, self.quantity)})
+    def multiplier(self, seat: SeatMotion, multiplier: Floats) -> Floats:
+        """Return the quantity's multipliers, (3, 2 count), of the rows', (2, count)."""
+        ends = at_ends(value_of(seat, self.quantity)) * self.weight(multiplier)[:, None]
+        return np.concatenate([np.tensordot(share, ends, 1) for share in TO_ENDS.T], axis=1)
+
+    def weight(self, multiplier: Floats) -> Floats:
+        """Return the weights of the squared values in the second derivatives, (2, count)."""
+        return np.asarray(2.0 * multiplier / self.bound**2)
+
+    def parts(self, seat: SeatMotion) -> Floats:
+        """Return the derivatives of the values at the ends, (v, 6, 2 count): end after end."""
         by = slope_of(seat, self.quantity)
-        at_pair = 0
-        for k in range(VARIABLES):
-            if k < len(by):
-                hessian[at_pair : at_pair + len(by) - k] += weight[0] * np.einsum(
-                    "cm,lcm->lm", by[k], by[k:]
-                )
-            at_pair += VARIABLES - k
-        return hessian
+        count = by.shape[-1] // 2
+        shares = np.repeat(TO_ENDS, count, axis=1)  # (2, 2 count)
+        return np.concatenate([share * by for share in shares], axis=1)
+
+    def along(self, change: Floats) -> Floats:
+        """Return what a change of the quantity, (3, 2 count), is at the ends, (6, count)."""
+        ends = at_ends(change)
+        return ends.reshape(-1, ends.shape[-1])
+
+    def turned(self, seat: SeatMotion, change: Floats) -> Floats:
+        """Return what a change of the quantity, (3, 2 count), changes of the rows, (2, count)."""
+        along = np.sum(at_ends(change) * at_ends(value_of(seat, self.quantity)), axis=1)
+        return np.asarray(2.0 / self.bound**2 * along)
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,10 +214,6 @@ class OnsetBound:
         slope[..., : slope.shape[-1] // 2] *= -1.0
         return np.asarray(slope)
 
-    def curvature(self, seat: SeatMotion, angles: Floats, at: slice, multiplier: Floats) -> Floats:
-        """Return the second derivatives times multipliers (rows, count), (36, 2 count)."""
-        return curvature_of(seat, {"force": self.force_multiplier(multiplier)})
-
     def force_multiplier(self, multiplier: Floats) -> Floats:
         """Return the force's multipliers, (3, 2 count), of the rows', (rows, count)."""
         second = self.direction.T @ multiplier  # of the second point; the first has its negative
@@ -206,3 +223,9 @@ class OnsetBound:
         """Return what a change of the force, (3, 2 count), changes of the rows."""
         first, second = np.split(change, 2, axis=1)
         return np.asarray(self.direction @ (second - first))
+
+
+def at_ends(values: Floats) -> Floats:
+    """Return values at both ends of intervals, (2, c, count), of those at points, (c, 2 count)."""
+    points = values.reshape(len(values), len(GAUSS), -1)
+    return np.asarray(np.einsum("ep,cpm->ecm", TO_ENDS, points))

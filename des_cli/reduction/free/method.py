@@ -58,12 +58,9 @@ optimum."""
 MOST_ROUNDING = 1.0
 """Share of a jerk limit that rounding may make: beyond it no row can keep the limit."""
 
-LONG, COARSE = 4000, 1000
-"""Intervals from which a well-posed problem is solved on a coarser grid first, and the most
-that this has."""
-
 FEW = 250
-"""The same of an ill-posed one, which always is."""
+"""Intervals from which an ill-posed problem is solved on a coarser grid first, and the most
+that this has."""
 
 DOWN = (16.0, 8.0, 4.0, 2.0, 1.0)
 """Multiples of the budgets that the second start of an ill-posed problem comes down by."""
@@ -217,15 +214,13 @@ class _Search:
     def _grids(self) -> list[SplineGrid]:
         """Return the grids to solve on, the last one that of the result."""
         natural = knot_grid(self.t).intervals
-        most = COARSE if self.well_posed else FEW
-        doublings = 0
-        if natural > (LONG if self.well_posed else FEW):
-            doublings = int(np.ceil(np.log2(natural / most)))
+        if self.well_posed or natural <= FEW:
+            return [knot_grid(self.t)]
+        doublings = int(np.ceil(np.log2(natural / FEW)))
         finest = knot_grid(self.t, 2**doublings)
-        steps = [2**doublings, 1] if self.well_posed else [2**d for d in range(doublings, -1, -1)]
         return [
             SplineGrid(finest.start, finest.step * each, finest.intervals // each)
-            for each in dict.fromkeys(steps)
+            for each in (2**d for d in range(doublings, -1, -1))
         ]
 
     def _fit(self, grid: SplineGrid) -> ExecutableSpline:

@@ -106,63 +106,60 @@ def test_blocks_at_points(share: float, rng: np.random.Generator) -> None:
 
 
 @SHARES
-def test_squares_of_rows_of_an_interval(share: float, rng: np.random.Generator) -> None:
+@pytest.mark.parametrize("curvature", [False, True], ids=["always", "by the share"])
+def test_squares_of_rows_of_an_interval(
+    share: float, curvature: bool, rng: np.random.Generator
+) -> None:
     windows, count = UNKNOWNS.seat_windows, LAST - FIRST
     slope, corner = rng.normal(size=(12, 2, count)), rng.normal(size=(ANGLES, ANGLES))
+    across = rng.normal(size=(ANGLES, VARIABLES, M))
     jacobian = np.zeros((2, count, SIZE))
     for k in range(count):
         at = 3 * (FIRST + k)
         jacobian[:, k, at : at + 12] = slope[:, :, k].T
-    expected = np.einsum("rks,rkt->st", jacobian, jacobian)
-    part = IntervalSquares(windows, FIRST, slope, corner)
-    same(added(part, share), bordered(expected, corner=corner))
+    counted = share if curvature else 1.0
+    motion = counted * np.einsum("rks,rkt->st", jacobian, jacobian)
+    border = counted * np.einsum("avp,vps->as", across, gathering(windows))
+    part = IntervalSquares(windows, FIRST, slope, across, corner, curvature)
+    same(added(part, share), bordered(motion, border, counted * corner))
 
 
 @SHARES
-@pytest.mark.parametrize("weighted", [False, True], ids=["scaled", "by the share"])
 def test_squares_of_residuals_that_the_seats_angles_move_too(
-    share: float, weighted: bool, rng: np.random.Generator
+    share: float, rng: np.random.Generator
 ) -> None:
-    slopes, jacobian, weight = [], [], []
+    slopes, jacobian = [], []
     local = gathering(UNKNOWNS.seat_windows)
-    for variables, curved in ((5, False), (VARIABLES, weighted), (VARIABLES, False)):
+    for variables in (5, VARIABLES, VARIABLES):
         slope, by_seat = rng.normal(size=(variables, 3, M)), rng.normal(size=(ANGLES, 3, M))
-        each = rng.random(M) if curved else None
-        slopes.append(ScaledSlope(slope, by_seat, each))
+        slopes.append(ScaledSlope(slope, by_seat))
         by_motion = np.einsum("vrp,vps->rps", slope, local[:variables])
         jacobian.append(np.concatenate([by_motion, by_seat.transpose(1, 2, 0)], axis=2))
-        weight.append(np.ones(M) if each is None else share * each)
-    expected = sum(
-        np.einsum("rps,p,rpt->st", j, w, j) for j, w in zip(jacobian, weight, strict=True)
-    )
-    nothing = np.zeros((36, M)), np.zeros((ANGLES, VARIABLES, M)), SeatCurvature()
-    same(added(SeatBlocks(UNKNOWNS.seat_windows, FIRST, slopes, *nothing), share), expected)
+    expected = sum(np.einsum("rps,rpt->st", j, j) for j in jacobian)
+    part = SeatBlocks(UNKNOWNS.seat_windows, FIRST, slopes, np.zeros((36, M)), SeatCurvature())
+    same(added(part, share), expected)
 
 
 @SHARES
 def test_curvature_of_the_seat_counts_by_its_share(share: float, rng: np.random.Generator) -> None:
     windows, local = UNKNOWNS.seat_windows, gathering(UNKNOWNS.seat_windows)
-    curvature, across = rng.normal(size=(36, M)), rng.normal(size=(ANGLES, VARIABLES, M))
+    curvature = rng.normal(size=(36, M))
     of_rate, of_force = rng.normal(size=(5, M)), rng.normal(size=(VARIABLES, M))
     by_seat = SeatCurvature([(0, of_rate), (1, of_force)], [(0, 0, 1.3), (0, 1, -0.4)])
-    part = SeatBlocks(windows, FIRST, [], curvature, across, by_seat)
+    part = SeatBlocks(windows, FIRST, [], curvature, by_seat)
     blocks = symmetric(share * curvature, VARIABLES)
     motion = np.einsum("kps,klp,lpt->st", local, blocks, local)
-    border = np.einsum("avp,vps->as", across, local)
-    border[0] += share * np.einsum("vp,vps->s", of_rate, local[:5])
-    border[1] += share * np.einsum("vp,vps->s", of_force, local)
+    border = share * np.stack(
+        [np.einsum("vp,vps->s", of_rate, local[:5]), np.einsum("vp,vps->s", of_force, local)]
+    )
     corner = share * np.array([[1.3, -0.4], [-0.4, 0.0]])
     same(added(part, share), bordered(motion, border, corner))
 
 
 def test_a_part_adds_the_same_again(rng: np.random.Generator) -> None:
-    slopes = [
-        ScaledSlope(rng.normal(size=(5, 3, M)), rng.normal(size=(ANGLES, 3, M)), weight)
-        for weight in (None, rng.random(M))
-    ]
-    across = rng.normal(size=(ANGLES, VARIABLES, M))
+    slopes = [ScaledSlope(rng.normal(size=(5, 3, M)), rng.normal(size=(ANGLES, 3, M)))]
     part = SeatBlocks(
-        UNKNOWNS.seat_windows, FIRST, slopes, rng.normal(size=(36, M)), across, SeatCurvature()
+        UNKNOWNS.seat_windows, FIRST, slopes, rng.normal(size=(36, M)), SeatCurvature()
     )
     once = added(part, 0.5)
     added(part, 1.0)
@@ -177,9 +174,8 @@ def test_a_seat_that_stays_has_the_same_band_and_no_border(
     curvature, bands = rng.normal(size=(36, M)), []
     for angles in (0, ANGLES):
         scaled = [ScaledSlope(slope, np.zeros((angles, 3, M))) for slope in slopes]
-        across = np.zeros((angles, VARIABLES, M))
         total = BorderedBand.zero(UNKNOWNS.grid.points, angles)
         windows = UNKNOWNS.seat_windows
-        SeatBlocks(windows, FIRST, scaled, curvature, across, SeatCurvature()).add_to(total, share)
+        SeatBlocks(windows, FIRST, scaled, curvature, SeatCurvature()).add_to(total, share)
         bands.append(total.band.data)
     np.testing.assert_allclose(bands[0], bands[1], rtol=0, atol=1e-12 * np.abs(bands[1]).max())

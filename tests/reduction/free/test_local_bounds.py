@@ -16,6 +16,7 @@ from des_cli.reduction.free.local_bounds import (
     ComponentBound,
     NormBound,
     OnsetBound,
+    at_ends,
 )
 from des_cli.reduction.free.terms import value_of
 
@@ -79,12 +80,21 @@ def test_components_are_at_one_where_the_bound_is(z):
 
 
 @pytest.mark.parametrize("bound", NORMS, ids=lambda bound: bound.quantity)
-def test_lengths(bound, z):
+def test_lengths_at_the_ends_of_intervals(bound, z):
     seat = FORMS.at(z)
-    length = np.linalg.norm(value_of(seat, bound.quantity), axis=0)
+    near, far = np.split(value_of(seat, bound.quantity), 2, axis=1)
+    beyond = (0.5 - np.sqrt(3.0) / 6.0) * np.sqrt(3.0) * (far - near)  # to the knot
+    ends = [near - beyond, far + beyond]
     value = bound.value(seat, NONE, AT)
-    assert value.shape == (1, M)
-    np.testing.assert_allclose(np.sqrt(value[0]), length / 1.7)
+    assert value.shape == (2, M // 2)
+    np.testing.assert_allclose(np.sqrt(value), np.linalg.norm(ends, axis=1) / 1.7)
+
+
+def test_what_is_linear_has_its_own_values_at_the_ends():
+    t = np.array([0.5 - np.sqrt(3.0) / 6.0, 0.5 + np.sqrt(3.0) / 6.0])
+    np.testing.assert_allclose(
+        at_ends(3.0 + 2.0 * t[None])[:, 0, 0], [3.0, 5.0], rtol=0, atol=1e-12
+    )
 
 
 def test_attitudes(z, angles):
@@ -110,8 +120,8 @@ def test_slopes(bound, z):
     slope = bound.slope(FORMS.at(z), NONE, AT)
 
     def value(y):
-        # an onset's row belongs to two points: move one, keep the other
-        if isinstance(bound, OnsetBound):
+        # a row that belongs to two points: move one, keep the other
+        if isinstance(bound, OnsetBound | NormBound):
             half = M // 2
             first = np.concatenate([y[:, :half], z[:, half:]], axis=1)
             second = np.concatenate([z[:, :half], y[:, half:]], axis=1)
@@ -122,20 +132,6 @@ def test_slopes(bound, z):
 
     assert slope.shape == (VARIABLES, bound.rows, M)
     np.testing.assert_allclose(slope, differences(value, z), rtol=1e-5, atol=1e-6)
-
-
-@pytest.mark.parametrize("bound", BOUNDS.values(), ids=list(BOUNDS))
-def test_curvature(bound, z, rng):
-    count = M // 2 if isinstance(bound, OnsetBound) else M
-    multiplier = rng.normal(size=(bound.rows, count))
-    at_points = np.tile(multiplier, (1, M // count))
-
-    def gradient(y):
-        return np.einsum("vrm,rm->vm", bound.slope(FORMS.at(y), NONE, AT), at_points)
-
-    found = bound.curvature(FORMS.at(z), NONE, AT, multiplier)
-    expected = differences(gradient, z)[np.triu_indices(VARIABLES)]
-    np.testing.assert_allclose(found, expected, rtol=1e-5, atol=1e-5)
 
 
 def test_slope_and_curvature_of_attitudes(z, angles, rng):
