@@ -105,6 +105,8 @@ class Options:
         On the first-order conditions, relative to the gradients at the start.
     start_gap : float
         Complementarity that the first barrier aims at.
+    halfway : float
+        Complementarity of an iterate that is kept.
     max_iterations : int
     stop_early : callable, optional
         Told the budgets' values at each iterate; ends the method where it returns True.
@@ -113,6 +115,7 @@ class Options:
     gap: float = 1e-7
     tolerance: float = 1e-7
     start_gap: float = 3.0
+    halfway: float = 1e-2
     max_iterations: int = 200
     stop_early: Callable[[Floats], bool] | None = None
 
@@ -144,6 +147,9 @@ class Outcome:
         Complementarity, in the unit of the cost, and violation of the first-order conditions,
         relative to the gradients at the start.
     steps : tuple of Step
+    halfway : (N,) array
+        The first iterate whose complementarity was at most ``Options.halfway``: near the
+        optimum, and with room to all bounds, to begin from where these change a little.
     """
 
     status: BoundaryStatus
@@ -153,6 +159,7 @@ class Outcome:
     gap: float
     optimality: float
     steps: tuple[Step, ...]
+    halfway: Floats
 
 
 def minimise(
@@ -226,6 +233,7 @@ class _Search(Generic[E]):
     def run(self) -> Outcome:
         options = self.options
         status: BoundaryStatus = "iteration-limit"
+        halfway: Floats | None = None
         for number in range(options.max_iterations + 1):
             expansion, system = self._linearise()
             residual = self._residual(expansion)
@@ -234,6 +242,8 @@ class _Search(Generic[E]):
             self.steps.append(line)
             if self.on_step is not None:
                 self.on_step(line)
+            if halfway is None and gap <= options.halfway:
+                halfway = self.x
             if gap <= 1.0001 * options.gap and residual <= options.tolerance:
                 status = "converged"
                 break
@@ -261,6 +271,7 @@ class _Search(Generic[E]):
             gap=last.gap,
             optimality=last.optimality,
             steps=tuple(self.steps),
+            halfway=self.x if halfway is None else halfway,
         )
 
     def _linearise(self) -> tuple[E, System | None]:

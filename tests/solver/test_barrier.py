@@ -316,6 +316,20 @@ def test_the_limit_on_iterations():
     np.testing.assert_array_equal(full.steps[2].cost, outcome.values.cost)
 
 
+def test_halfway_there_is_room_for_a_smaller_budget():
+    c = np.array([3.0, -4.0])
+    linear = quadratic(np.zeros((2, 2)), -c)
+    large, small = (boxed(linear, 10.0, 2, budgets=(disc([0, 0], r),)) for r in (0.7, 0.6999))
+    outcome = solved(large, [0.1, 0.0])
+    assert small.values(outcome.x).budgets[0] > 1.0
+    assert small.values(outcome.halfway).budgets[0] < 1.0
+    (step,) = [s for s in outcome.steps if s.cost == large.cost.value(outcome.halfway)]
+    assert step.gap <= 1e-2 < outcome.steps[step.number - 1].gap
+    again = minimise(small, outcome.halfway, Options(start_gap=1e-2, gap=1e-8, tolerance=1e-8))
+    np.testing.assert_allclose(again.x, 0.6999 * c / 5.0, atol=1e-6)
+    assert len(again.steps) < len(outcome.steps)
+
+
 def test_a_gradient_that_is_not_one_is_told():
     wrong = quadratic(np.eye(2), [0.5, 0.5])
     wrong.gradient = lambda x: -(x + 0.5)  # up, not down

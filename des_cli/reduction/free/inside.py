@@ -61,7 +61,7 @@ def find_inside(
     values = program.values(x)
     if np.any(np.abs(program.linear(x)) >= program.bounds):
         return None
-    if _worst(values) < -LITTLE_ROOM:
+    if is_inside(program, x):
         return x
     plain = MotionProgram(replace(program.problem, cost=[], ground=None))
     for _ in range(ROUNDS):
@@ -83,6 +83,11 @@ def find_inside(
         if _worst(values) < -ROOM or after > before - PROGRESS * max(before, ROOM):
             break
     return x if _worst(values) < -LITTLE_ROOM else None
+
+
+def is_inside(program: MotionProgram, x: Floats) -> bool:
+    """Return whether a point inside the limits on the joints has room to budgets and bounds."""
+    return _worst(program.values(x)) < -LITTLE_ROOM
 
 
 def _largest(values: Floats) -> float:

@@ -36,7 +36,7 @@ from des_cli.reduction.executable import (
 )
 from des_cli.reduction.fidelity import Deviation
 from des_cli.reduction.free.answers import Answers, FreeResult, StepLog
-from des_cli.reduction.free.inside import find_inside
+from des_cli.reduction.free.inside import find_inside, is_inside
 from des_cli.reduction.free.limit_rows import Tie
 from des_cli.reduction.free.pose import cross_coupling, pose_motion
 from des_cli.reduction.free.program import MotionProgram
@@ -351,11 +351,14 @@ class _Search:
                 factor = {m: 1.0 - max(each, 0.0) for m, each in over.items()}
             budgets = [replace(b, most=b.most * factor[b.metric]) for b in budgets]
             program = self._program(fit, budgets)
-            # from where the search began: at its end hundreds of limits have no room
-            inside = find_inside(program, start, self.log)
-            if inside is None:
-                break
-            outcome = self._minimise(program, inside, rough=False, warm=self.warm)
+            # from halfway, or from the start: at the end hundreds of limits have no room
+            inside, warm = outcome.halfway, True
+            if not is_inside(program, inside):
+                found, warm = find_inside(program, start, self.log), self.warm
+                if found is None:
+                    break
+                inside = found
+            outcome = self._minimise(program, inside, rough=False, warm=warm)
         return best or self.answers.refused(desired, self.answers.unkept(spent, beyond))
 
     def _spent_of_record(self, modified: Motion, seat: Seat) -> dict[MetricKey, float]:

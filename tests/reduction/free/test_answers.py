@@ -37,7 +37,7 @@ BUDGETS = {SEAT_G_ERROR: 0.1, SEAT_RATE_DEVIATION: 0.2}
 
 def outcome_of(status: BoundaryStatus, gap: float, optimality: float) -> Outcome:
     values = Values(0.0, np.zeros(0), np.zeros(0))
-    return Outcome(status, np.zeros(0), values, np.zeros(0), gap, optimality, ())
+    return Outcome(status, np.zeros(0), values, np.zeros(0), gap, optimality, (), np.zeros(0))
 
 
 def answers_of(task: FreeTask, steps: int = 0, limit: int = 50) -> Answers:
