@@ -21,7 +21,7 @@ class Caps:
     """
 
     rows: int = 1_000_000
-    mib: int = 64
+    mib: int = 96
 
     @property
     def size(self) -> int:

@@ -52,7 +52,7 @@ def main() -> None:
                     continue  # too coarse to hold the maneuver
                 write_maneuver(Path(folder, "x.csv"), rows, duration)
                 arguments = ("reduce", "x.csv", "-o", "o.csv", "--overwrite", "-q")
-                command = (sys.executable, *PROGRAM, *arguments, "--max-mib", "256")
+                command = (sys.executable, *PROGRAM, *arguments)
                 costs = in_turns({"": command}, Path(folder), options.repeats)[""]
                 print(row([str(rows), f"{duration:g}", *told(costs)]), flush=True)
 
