@@ -26,6 +26,7 @@ from des_cli.signals import cause_of, stopping
 COMMANDS = {
     "reduce": "Reduce the cross-coupling of profiles; write command tables.",
     "report": "Put runs on one HTML page.",
+    "plot": "Draw one figure of a run, as SVG, PDF or PNG.",
     "sweep": "Trade deviation for cross-coupling: a curve of optima.",
     "validate": "Check profiles and name all of their problems.",
     "verify": "Check a run or a command table before a machine loads it.",

@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import matplotlib
 import numpy as np
@@ -25,6 +25,8 @@ from PIL.PngImagePlugin import PngInfo
 from des_cli.model.arrays import Floats
 from des_cli.show.plots.pens import AXIS, FAINT, INK, NOTE, VERMILION, ZERO, Pen
 from des_cli.show.plots.thinning import thin
+
+PictureFormat: TypeAlias = Literal["png", "svg", "pdf"]
 
 WIDTH, LEFT, RIGHT, TOP, BOTTOM, GAP = 9.0, 0.85, 0.2, 0.55, 0.52, 0.3
 _DPI = 150
@@ -193,6 +195,23 @@ def note(panel: Axes, words: str) -> None:
     # no mathematics: a stranger's words may hold dollar signs
     look: dict[str, Any] = {"fontsize": 8, "color": NOTE, "parse_math": False}
     panel.set_title(words, loc="right", pad=3, **look)
+
+
+def encode(figure: Figure, title: str, format: PictureFormat) -> bytes:
+    """Return a figure in the bytes of a format; equal figures give equal bytes.
+
+    Letters are drawn as outlines in SVG, and embedded in PDF: neither needs a font.
+    """
+    if format == "png":
+        return png(figure, title)
+    figure.align_ylabels()
+    stream = io.BytesIO()
+    # no times, and names of clip paths that do not differ from run to run
+    facts: dict[str, Any] = {"Title": title, "Creator": "des-coriolis"}
+    facts |= {"Date": None} if format == "svg" else {"CreationDate": None, "Producer": None}
+    with matplotlib.rc_context({"svg.hashsalt": "des-coriolis", "pdf.fonttype": 42}):
+        figure.savefig(stream, format=format, metadata=facts)
+    return stream.getvalue()
 
 
 def png(figure: Figure, title: str) -> bytes:

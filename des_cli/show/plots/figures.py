@@ -20,10 +20,20 @@ from des_cli.model.coriolis import COMPONENTS, ComponentKey
 from des_cli.model.machine import JOINTS
 from des_cli.model.metrics import Metrics
 from des_cli.results.reading import read_metrics
-from des_cli.show.plots.canvas import draw, note, png, set_span, sheet, stamp, style
-from des_cli.show.plots.pens import AFTER, BEFORE, DASHES, DESIRED, GREY, JOINT_PENS, MODIFIED, Pen
+from des_cli.show.plots.canvas import (
+    PictureFormat,
+    draw,
+    encode,
+    note,
+    set_span,
+    sheet,
+    stamp,
+    style,
+)
+from des_cli.show.plots.pens import AFTER, BEFORE, DESIRED, MODIFIED, Pen
 from des_cli.show.plots.ride import felt, limits
 from des_cli.show.plots.standing import budget_words, change_words, status_words
+from des_cli.show.plots.study import STUDY_FIGURES, factor, tradeoff_of_run
 from des_cli.show.plots.weighted import weighted_component
 from des_cli.show.words import FIGURE
 from des_cli.units import split_unit
@@ -83,33 +93,51 @@ def draw_plots(
         The PNG of each figure by its name, in the order of ``CAPTIONS``; without
         ``factor`` and ``adjoint`` where the motion has none. The same input gives the same bytes.
     """
-    figures: dict[str, Callable[[Columns, Metrics], tuple[Figure, str]]] = {
-        "felt": felt,
-        "coriolis": _coriolis,
-        "coriolis_components": _coriolis_components,
-        "commands": _commands,
-        "limits": limits,
-        "deviation": _deviation,
-        "factor": _factor,
-        "adjoint": _adjoint,
-    }
-    if not any(_is_factor(name) for name in trajectory):
-        del figures["factor"]
-    if "adjoint_arm" not in trajectory:
-        del figures["adjoint"]
     metrics = read_metrics(content)
-    status = status_words(metrics)
     pictures = {}
-    with style():
-        for name, draw_figure in figures.items():
-            if name in drawn:
-                pictures[name] = drawn[name]
-                continue
-            figure, title = draw_figure(trajectory, metrics)
-            if status:
-                stamp(figure, status)
-            pictures[name] = png(figure, title)
+    for name in figures_of(trajectory):
+        pictures[name] = (
+            drawn[name] if name in drawn else draw_figure(name, trajectory, metrics, "png")
+        )
     return pictures
+
+
+def figures_of(trajectory: Columns) -> list[str]:
+    """Return which of the figures of ``CAPTIONS`` a motion has."""
+    has = {
+        "factor": any(_is_factor(name) for name in trajectory),
+        "adjoint": "adjoint_arm" in trajectory,
+    }
+    return [name for name in CAPTIONS if has.get(name, True)]
+
+
+def draw_figure(name: str, trajectory: Columns, metrics: Metrics, format: PictureFormat) -> bytes:
+    """Draw one figure.
+
+    Parameters
+    ----------
+    name : str
+        Of ``FIGURES``.
+    trajectory : mapping of str to (n,) array
+        The columns of ``trajectory.parquet``.
+    metrics : Metrics
+    format : {"png", "svg", "pdf"}
+
+    Returns
+    -------
+    bytes
+        The same for the same input.
+
+    Raises
+    ------
+    ValueError
+        Saying what the motion lacks for the figure.
+    """
+    with style():
+        figure, title = FIGURES[name](trajectory, metrics)
+        if status := status_words(metrics):
+            stamp(figure, status)
+        return encode(figure, title, format)
 
 
 def _commands(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
@@ -158,21 +186,6 @@ def _coriolis_components(columns: Columns, metrics: Metrics) -> tuple[Figure, st
             note(axes[i][j], _share_taken_off(metrics, key))
     together = [values for name, values in columns.items() if name.startswith("coriolis_")]
     set_span(axes[0][0], together, _FLOOR["rad/s²"])
-    return figure, title
-
-
-def _factor(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
-    title = "Factor p on the joint rates (study Fig. 9)"
-    one = Pen("desired, p = 1", GREY, DASHES, 1.3, 2.5)
-    if "p" in columns:
-        factors = [(Pen("p", MODIFIED.color), columns["p"])]
-    else:
-        factors = [
-            (pen, columns[f"p_{joint}"]) for pen, joint in zip(JOINT_PENS, JOINTS, strict=True)
-        ]
-    curves = [(one, np.ones_like(columns["t_s"])), *factors]
-    figure, axes = sheet(title, [pen for pen, _ in curves], 1, height=2.6)
-    draw(axes[0][0], columns["t_s"], curves, "p [–]", _FLOOR["p"])
     return figure, title
 
 
@@ -227,3 +240,20 @@ def _share_taken_off(metrics: Metrics, key: ComponentKey) -> str:
     if reduction is None:
         return ""
     return f"squared integral {FIGURE.change(reduction)}"
+
+
+FIGURES: Mapping[str, Callable[[Columns, Metrics], tuple[Figure, str]]] = MappingProxyType(
+    {
+        "felt": felt,
+        "coriolis": _coriolis,
+        "coriolis_components": _coriolis_components,
+        "commands": _commands,
+        "limits": limits,
+        "deviation": _deviation,
+        "factor": factor,
+        "adjoint": _adjoint,
+        **STUDY_FIGURES,
+        "tradeoff": tradeoff_of_run,
+    }
+)
+"""How each is drawn: those of ``CAPTIONS``, the study's by their numbers, and the trade-off."""

@@ -19,9 +19,10 @@ from des_cli.show.words import FIGURE
 
 Columns: TypeAlias = Mapping[str, Floats]
 
-_FLOOR = {"deg/s": 0.1, "rad/s²": 2e-3, "g": 2e-3, "rad/s³": 0.02}
+_FLOOR = {"deg/s": 0.1, "rad/s": 2e-3, "rad/s²": 2e-3, "g": 2e-3, "rad/s³": 0.02}
 
 _DRIVEN: tuple[tuple[str, Driven, str], ...] = (
+    ("rad_s", "rate", "rad/s"),
     ("rad_s2", "acceleration", "rad/s²"),
     ("rad_s3", "jerk", "rad/s³"),
 )
@@ -61,10 +62,10 @@ def felt(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
 
 
 def limits(columns: Columns, metrics: Metrics) -> tuple[Figure, str]:
-    """Draw acceleration and jerk of each joint inside the machine's limits."""
-    title = "Acceleration and jerk of the joints, and their limits"
+    """Draw rate, acceleration and jerk of each joint inside the machine's limits."""
+    title = "How the joints are driven, within their limits"
     band = Pen("within the limit", WITHIN, width=7.0)
-    figure, axes = sheet(title, [band, DESIRED, MODIFIED], 3, 2, height=1.7)
+    figure, axes = sheet(title, [band, DESIRED, MODIFIED], 3, 3, height=1.7)
     for i, joint in enumerate(JOINTS):
         for j, (suffix, name, unit) in enumerate(_DRIVEN):
             curves = [

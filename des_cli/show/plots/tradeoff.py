@@ -68,13 +68,18 @@ def draw_tradeoff(points: Sequence[TradePoint], about: str) -> bytes:
         The PNG. The abscissa is the metric that the budgets were set on where a
         point knows it, otherwise the joint deviation.
     """
-    title = "Reduction of the cross-coupling against deviation"
     with style():
-        figure = _figure(points, title)
-        shown = about if len(about) <= _LONGEST else f"{about[: _LONGEST - 1]}…"
-        noted = figure.axes[0].set_title(shown, loc="right", fontsize=8, color=NOTE, pad=3)
-        noted.set_parse_math(False)
-        return png(figure, f"{title}: {about}")
+        return png(*tradeoff_sheet(points, about))
+
+
+def tradeoff_sheet(points: Sequence[TradePoint], about: str) -> tuple[Figure, str]:
+    """Return the figure of `draw_tradeoff` and its title, in the style that is set."""
+    title = "Reduction of the cross-coupling against deviation"
+    figure = _figure(points, title)
+    shown = about if len(about) <= _LONGEST else f"{about[: _LONGEST - 1]}…"
+    noted = figure.axes[0].set_title(shown, loc="right", fontsize=8, color=NOTE, pad=3)
+    noted.set_parse_math(False)
+    return figure, f"{title}: {about}"
 
 
 def _figure(points: Sequence[TradePoint], title: str) -> Figure:
@@ -119,8 +124,9 @@ def _scale(axes: Axes, drawn: Sequence[tuple[Pen, list[TradePoint]]], abscissa: 
     """Set the axes: as wide as what was asked for, not as the baselines reach."""
     places = {pen: _places(curve, abscissa) for pen, curve in drawn}
     asked = [places[pen][0].max() for pen in (FREE, PER_JOINT, SCALAR) if pen in places]
+    alone = [x.max() for pen, (x, _) in places.items() if pen is CONSTANT and len(x) == 1]
     every = [x.max() for x, _ in places.values()]
-    right = float(max(asked or every, default=1.0))
+    right = float(max([*asked, *alone] or every, default=1.0))
     if asked and STUDY in places:
         near = [x for x in places[STUDY][0] if x <= _WIDEST * right]
         right = max([right, *near])
@@ -142,7 +148,7 @@ def _scale(axes: Axes, drawn: Sequence[tuple[Pen, list[TradePoint]]], abscissa: 
 
 def _draw(axes: Axes, pen: Pen, curve: Sequence[TradePoint], abscissa: str) -> None:
     x, y = _places(curve, abscissa)
-    if pen is not STUDY:
+    if pen is not STUDY and len(x) > 1:
         # The desired motion itself, no deviation and no reduction, is on every curve.
         axes.plot(
             np.append(0.0, x),

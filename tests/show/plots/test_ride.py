@@ -17,11 +17,11 @@ def panel_of_limits(peak: float, limit: float | None) -> Any:
         f"{which}_{joint}_{unit}": peak * np.sin(7.0 * t)
         for which in ("asked", "modified")
         for joint in ("arm", "fork", "cab")
-        for unit in ("rad_s2", "rad_s3")
+        for unit in ("rad_s", "rad_s2", "rad_s3")
     }
     arm = {"acceleration_limit_rad_s2": limit, "acceleration_peak_rad_s2": peak}
     with style():
-        return limits(columns, read_metrics({"limits": {"modified": {"arm": arm}}}))[0].axes[0]
+        return limits(columns, read_metrics({"limits": {"modified": {"arm": arm}}}))[0].axes[1]
 
 
 @pytest.mark.parametrize(
