@@ -31,6 +31,7 @@ for line in (
     "reduce cobra cobra_table3 -o runs --set time.step_s=0.1 --no-plots --store store",
     "report --store store --where iterations>0",
     "verify run",
+    "feed run --dry-run",
     "validate cobra",
     "sweep cobra -o curve.csv --set time.step_s=0.1 --budgets 0.02,0.05 --controls scalar",
     "kinematics cobra --format csv",

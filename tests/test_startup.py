@@ -51,6 +51,7 @@ def imported(watched: set[str], *args: str, cwd: Path, env: dict[str, str]) -> s
         ["kinematics", "--help"],
         ["machines", "--help"],
         ["schema", "--help"],
+        ["feed", "--help"],
     ],
     ids=" ".join,
 )

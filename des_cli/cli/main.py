@@ -30,6 +30,7 @@ COMMANDS = {
     "sweep": "Trade deviation for cross-coupling: a curve of optima.",
     "validate": "Check profiles and name all of their problems.",
     "verify": "Check a run or a command table before a machine loads it.",
+    "feed": "Send the rows of a run or a command table, each at its time.",
     "kinematics": "Show the kinematics of a state, or of a profile's motion.",
     "profiles": "List the built-in profiles, or print one.",
     "machines": "List the built-in machines, or print one.",

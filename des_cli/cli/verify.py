@@ -4,40 +4,21 @@ from __future__ import annotations
 
 import json
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
 from des_cli.cli.options import fail_on_option, text_or_json_option
 from des_cli.cli.source_options import machine_option, read_stdin
 from des_cli.cli.state_options import in_si, state_options
 from des_cli.cli.stdout import write_line
+from des_cli.cli.targets import LARGEST, STANDING, check_target, tell_verdict
 from des_cli.errors import DesError, ExitCode, Failure
-from des_cli.profiles_in.caps import Caps
 
 if TYPE_CHECKING:
-    from des_cli.model.machine import Machine
     from des_cli.release.stored import Verdict
-
-STANDING = (
-    ("arm", "angle"),
-    ("arm", "rate"),
-    ("fork", "angle"),
-    ("cab", "angle"),
-    ("seat_yaw", "angle"),
-    ("seat_pitch", "angle"),
-)
-"""What is told of the machine that is to play a table."""
-
-LARGEST = Caps(mib=1024)
-"""Table that is read: ten million rows are no ride."""
-
-STARTS = (("arm", "rate"), ("fork", "angle"), ("cab", "angle"))
-"""What the first row of a table says."""
 
 
 @click.command(
@@ -86,80 +67,21 @@ def verify(
     codes = [ExitCode.DONE]
     for target in targets:
         try:
-            verdict = _verdict(target, stdin, other, given)
+            verdict = check_target(target, stdin, other, given)
         except (DesError, OSError) as error:
             failure = Failure.of(error)
             codes.append(failure.exit_code)
             console.failure(failure)
             facts: dict[str, Any] = {"exit_code": failure.exit_code, "problems": failure.lines}
         else:
-            codes.append(_told(console, target, verdict, fail_on, form))
+            codes.append(tell_verdict(console, target, verdict, fail_on))
+            if form == "text" and codes[-1] == ExitCode.DONE:
+                write_line(_line(target, verdict))
             facts = _facts(verdict, codes[-1])
         if form == "json":
             write_line(json.dumps({"target": target, "ok": not facts["exit_code"], **facts}))
     # The worst of several: a table that is not to be played before a file that is none.
     return max(codes)
-
-
-def _verdict(
-    target: str,
-    stdin: bytes | None,
-    machine: Machine | None,
-    given: dict[tuple[str, str], float],
-) -> Verdict:
-    import numpy as np
-
-    from des_cli.model.machine import Seat
-    from des_cli.model.machines import MACHINES
-    from des_cli.profiles_in.machine_schema import DEFAULT_MACHINE
-    from des_cli.profiles_in.source import STDIN_LABEL, read_source
-    from des_cli.release.stored import check_stored_run, check_stored_table
-
-    start = np.array([given.get(quantity, math.nan) for quantity in STARTS])
-    if target == STANDARD_STREAM:
-        assert stdin is not None, "it was read"
-        data, label = stdin, STDIN_LABEL
-    elif Path(target).is_dir():
-        _refuse_of_run(given)
-        return check_stored_run(target, machine, start)
-    else:
-        data, label = read_source(Path(target), target, LARGEST.mib, pipes=True), target
-    seat = Seat()
-    return check_stored_table(
-        data,
-        label,
-        machine or MACHINES[DEFAULT_MACHINE],
-        Seat(
-            given.get(("seat_yaw", "angle"), seat.yaw),
-            given.get(("seat_pitch", "angle"), seat.pitch),
-        ),
-        start,
-        given.get(("arm", "angle"), 0.0),
-    )
-
-
-def _refuse_of_run(given: dict[tuple[str, str], float]) -> None:
-    own = [stem.replace("_", " ") for stem, kind in given if (stem, kind) not in STARTS]
-    if own:
-        raise click.UsageError(
-            f"the {' and the '.join(own)} angle is a run's own: give it for a table alone."
-        )
-
-
-def _told(
-    console: Console, target: str, verdict: Verdict, fail_on: frozenset[str], form: str
-) -> ExitCode:
-    """Print a verdict, and return its exit code."""
-    console.warn((f"{target}: {check.key}: {check}" for check in verdict.failed), "error")
-    refused = [notice for notice in verdict.notices if notice.name in fail_on]
-    for notice in verdict.notices:
-        style = "error" if notice in refused else "warning"
-        console.warn([f"{target}: {notice.name}: {notice.text}"], style)
-    if verdict.failed or refused:
-        return ExitCode.NOT_RELEASED
-    if form == "text":
-        write_line(_line(target, verdict))
-    return ExitCode.DONE
 
 
 def _line(target: str, verdict: Verdict) -> str:

@@ -42,6 +42,10 @@ class Verdict:
     table : CommandTable
     machine : Machine
         Against which it was measured.
+    seat : Seat
+        How it is fixed in the cab.
+    arm_start : float
+        Where the arm is at the first row [rad].
     checks : tuple of Check
     notices : tuple of Notice
         What the table does that the profile of its run does not.
@@ -50,6 +54,8 @@ class Verdict:
     name: str
     table: CommandTable
     machine: Machine
+    seat: Seat
+    arm_start: float
     checks: tuple[Check, ...]
     notices: tuple[Notice, ...] = ()
 
@@ -94,7 +100,7 @@ def check_stored_run(
     maneuver = table.between(t[0], t[-1])
     checks = [check_times(table), *check_rows(maneuver, _rows(run.trajectory, "modified"))]
     if not all(check.ok for check in checks):
-        return Verdict(run.name, table, machine or own, tuple(checks))
+        return Verdict(run.name, table, machine or own, seat, arm, tuple(checks))
     if limits:
         checks += check_against(machine or own, seat, table, arm)
         checks += check_ride(metrics.felt, maneuver, own, seat)
@@ -106,7 +112,7 @@ def check_stored_run(
     asked, desired = (_rows(run.trajectory, which) for which in ("asked", "desired"))
     notices += find_start(asked.values[0, 1:], maneuver, metrics.solver.optimise)
     notices += find_harms(maneuver, desired, own, seat, metrics.felt)
-    return Verdict(run.name, table, machine or own, tuple(checks), tuple(notices))
+    return Verdict(run.name, table, machine or own, seat, arm, tuple(checks), tuple(notices))
 
 
 def check_stored_table(
@@ -139,9 +145,10 @@ def check_stored_table(
     table = _parse(data, label)
     times = check_times(table)
     if not times.ok:
-        return Verdict("", table, machine, (times,))
+        return Verdict("", table, machine, seat, arm_start, (times,))
     against = check_against(machine, seat, table, arm_start)
-    return Verdict("", table, machine, (times, *against, *_starts(start, table)))
+    checks = (times, *against, *_starts(start, table))
+    return Verdict("", table, machine, seat, arm_start, checks)
 
 
 def _intact(folder: str) -> StoredRun:

@@ -1,0 +1,1 @@
+"""Rows sent at their times."""
