@@ -32,6 +32,7 @@ for line in (
     "report --store store --where iterations>0",
     "verify run",
     "feed run --dry-run",
+    "export run --preset ros2 -o run.yaml",
     "validate cobra",
     "sweep cobra -o curve.csv --set time.step_s=0.1 --budgets 0.02,0.05 --controls scalar",
     "kinematics cobra --format csv",

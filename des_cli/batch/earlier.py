@@ -22,7 +22,7 @@ def stands(output: Output, target: Path) -> bool:
     """Tell whether a command table may be found where a job writes."""
     from des_cli.runs_out.manifest import is_run
 
-    return _table_stands(output, target) or (output.table_format is None and is_run(target))
+    return _table_stands(output, target) or (not output.one_file and is_run(target))
 
 
 def settle(output: Output, target: Path, result: JobResult) -> tuple[str, ...]:
@@ -72,7 +72,7 @@ def unnamed(output: Output, result: JobResult) -> tuple[str, ...]:
 def _table_stands(output: Output, target: Path) -> bool:
     from des_cli.runs_out.run_folder import COMMANDS
 
-    if output.table_format is not None:
+    if output.one_file:
         return target.is_file()
     return os.path.lexists(target / COMMANDS)
 
@@ -82,7 +82,7 @@ def _withdraw(output: Output, target: Path) -> bool:
     from des_cli.runs_out.manifest import is_run
     from des_cli.runs_out.run_folder import discard_run
 
-    if output.table_format is not None:
+    if output.one_file:
         # A link stays one, for what is written next.
         Path(os.path.realpath(target)).unlink(missing_ok=True)
         return True

@@ -191,7 +191,7 @@ def reduce_with(
     }
     try:
         run.require_release()
-        on_stage("plots and tables" if output.plots and output.table_format is None else "tables")
+        on_stage("plots and tables" if output.plots and not output.one_file else "tables")
         table = write(run)
     except DesError as error:
         # What the solver found explains the refusal: it is told all the same.
@@ -208,16 +208,15 @@ def _write(job: Job, run: Run, target: Path) -> bytes | None:
     from des_cli.release.gate import require_table
 
     output = job.output
-    accept = partial(require_table, run, fail_on=job.fail_on)
-    if output.table_format is None:
+    accept: Callable[[bytes], None] = partial(require_table, run, fail_on=job.fail_on)
+    if not output.one_file:
         from des_cli.runs_out.run_folder import write_run
 
         write_run(run, target, plots=output.plots, overwrite=output.overwrite, accept=accept)
         return None
     from des_cli.runs_out.atomic import write_file
-    from des_cli.runs_out.tables import command_columns, encode_table
 
-    table = encode_table(command_columns(run), output.table_format)
+    table, accept = _table(job, run, accept)
     if output.out == STANDARD_STREAM:
         accept(table)
         return table
@@ -225,11 +224,27 @@ def _write(job: Job, run: Run, target: Path) -> bytes | None:
     return None
 
 
+def _table(
+    job: Job, run: Run, accept: Callable[[bytes], None]
+) -> tuple[bytes, Callable[[bytes], None]]:
+    """Return the bytes of a table or of a form, and what they have to pass."""
+    output = job.output
+    if output.form is not None:
+        from des_cli.release.exported import export_of_run
+
+        export = export_of_run(run, output.form, job.fail_on)
+        return export.data, export.require
+    from des_cli.runs_out.tables import command_columns, encode_table
+
+    assert output.table_format is not None, "it is one file"
+    return encode_table(command_columns(run), output.table_format), accept
+
+
 def _refuse_place(output: Output, target: Path) -> None:
     """Refuse before solving where no table or run can be; the folder of a run is made."""
     if output.out == STANDARD_STREAM:
         return
-    if output.table_format is None:
+    if not output.one_file:
         from des_cli.runs_out.run_folder import require_place
 
         require_place(target)
@@ -246,7 +261,7 @@ def _refuse_existing(output: Output, target: Path) -> None:
     """Refuse before solving what would be refused when writing."""
     if output.out == STANDARD_STREAM or output.overwrite:
         return
-    if output.table_format is None:
+    if not output.one_file:
         from des_cli.runs_out.run_folder import is_free
 
         taken = not is_free(target)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 from des_cli.batch.source import Source, split_source
 from des_cli.errors import ExitCode, Failure
 from des_cli.model.notice import Notice
+from des_cli.runs_out.forms import Form
 
 if TYPE_CHECKING:
     from des_cli.model.solution import Iteration
@@ -30,7 +31,9 @@ class Output:
         Whether ``out`` is only the folder in which the run folder is named
         after the profile.
     table_format : str, optional
-        Write the command table alone, in this format; None writes a run folder.
+        Write the command table alone, in this format; None writes a run folder, or a form.
+    form : Form, optional
+        Write the rows alone, in this form.
     plots, overwrite : bool
     resume : bool
         Leave a finished run of the very same profile as it is.
@@ -41,10 +44,16 @@ class Output:
     out: str = "runs"
     out_is_parent: bool = True
     table_format: TableFormat | None = None
+    form: Form | None = None
     plots: bool = True
     overwrite: bool = False
     resume: bool = False
     dry_run: bool = False
+
+    @property
+    def one_file(self) -> bool:
+        """Whether rows are written, and no run folder."""
+        return self.table_format is not None or self.form is not None
 
     def destination(self, name: str) -> Path:
         """Return where a profile of this name is written."""

@@ -11,6 +11,7 @@ import click
 
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
+from des_cli.cli.form_options import FormWords, line_options, lines_form
 from des_cli.cli.options import fail_on_option
 from des_cli.cli.source_options import machine_option, read_stdin
 from des_cli.cli.state_options import in_si, state_options
@@ -20,6 +21,7 @@ from des_cli.errors import ExitCode, Stopped
 
 if TYPE_CHECKING:
     from des_cli.release.clocked import Clock, Clocked, End
+    from des_cli.runs_out.forms import Form
 
 MOST_ROWS = 10_000_000
 """That are sent: more than a day of them at 100 Hz."""
@@ -31,6 +33,7 @@ MOST_ROWS = 10_000_000
 Examples:
   des-coriolis feed runs/cobra_felt | nc console 5000
   des-coriolis feed commands.csv --machine ours.yaml --hz 250 --rate 0.5
+  des-coriolis feed runs/cobra_felt --preset halstreamer --hz 1000 | halstreamer
   des-coriolis feed runs/cobra_felt --at-end hold --hold-s 30 > /dev/ttyUSB0
 """,
 )
@@ -63,6 +66,7 @@ Examples:
     help="End so long after the last row.  [default: hold until interrupted]",
 )
 @click.option("--dry-run", is_flag=True, help="Check all rows, and send none.")
+@line_options
 @machine_option
 @state_options(STANDING)
 @fail_on_option
@@ -76,6 +80,7 @@ def feed(
     at_end: End,
     hold_s: float | None,
     dry_run: bool,
+    words: FormWords,
     machine: str | None,
     fail_on: frozenset[str],
     **numbers: float | None,
@@ -86,7 +91,8 @@ def feed(
     are to be sent, which lie between those of the table, against the same
     limits. Nothing is sent otherwise, and the exit code is that of verify.
 
-    Rows are those of a command table; "t_s" goes on in seconds of the clock.
+    Rows are those of a command table, or what --preset and --columns make of
+    it; times go on in seconds of the clock.
     How late rows were is told on stderr at the end. Ctrl-C ends at once with
     130, a reader that goes away with 141.
     """
@@ -116,7 +122,7 @@ def feed(
         console.warn([f"{target}: --rate {rate:g}: {share}"])
     console.say(plan_line(target, clock, clocked, hold_s))
     if not dry_run:
-        _send(console, target, _lines(clocked, clock, hold_s), hz)
+        _send(console, target, _lines(clocked, clock, lines_form(words), hold_s), hz)
     return ExitCode.DONE
 
 
@@ -134,16 +140,17 @@ def _send(console: Console, target: str, lines: Iterator[bytes], hz: float) -> N
         console.say(f"{target}: sent {lateness}")
 
 
-def _lines(clocked: Clocked, clock: Clock, hold_s: float | None) -> Iterator[bytes]:
-    """Yield a line for each row, the first with the header above it."""
+def _lines(clocked: Clocked, clock: Clock, form: Form, hold_s: float | None) -> Iterator[bytes]:
+    """Yield a line for each row, the first with what stands above it."""
     from des_cli.release.clocked import HELD_BLOCK
-    from des_cli.runs_out.row_layout import COMMANDS, header_line, row_lines
+    from des_cli.runs_out.row_text import header_lines, row_lines
 
-    lines = row_lines(clocked.rows)
+    start = float(clocked.rows.t[0])
+    lines = row_lines(clocked.rows, form, start)
     if clock.end == "hold":
         more = map(partial(clocked.held, clock), count(len(clocked.rows.t), HELD_BLOCK))
-        held = chain(lines, chain.from_iterable(map(row_lines, more)))
+        held = chain.from_iterable(row_lines(rows, form, start) for rows in more)
         most = None if hold_s is None else clocked.table_rows + round(hold_s * clock.hz)
-        lines = islice(held, most)
-    yield header_line(COMMANDS) + next(lines)
+        lines = islice(chain(lines, held), most)
+    yield header_lines(form) + next(lines)
     yield from lines

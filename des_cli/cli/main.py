@@ -31,6 +31,7 @@ COMMANDS = {
     "validate": "Check profiles and name all of their problems.",
     "verify": "Check a run or a command table before a machine loads it.",
     "feed": "Send the rows of a run or a command table, each at its time.",
+    "export": "Write a run or a command table in the form of another program.",
     "kinematics": "Show the kinematics of a state, or of a profile's motion.",
     "profiles": "List the built-in profiles, or print one.",
     "machines": "List the built-in machines, or print one.",

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any, NoReturn, cast
+from typing import Any, NoReturn
 
 import click
 from click.core import ParameterSource
 
-from des_cli.batch.job import Job, Output, TableFormat
+from des_cli.batch.job import Job, Output
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
+from des_cli.cli.form_options import (
+    FormWords,
+    form_of,
+    form_options,
+    hz_option,
+    output_form,
+)
 from des_cli.cli.options import (
     DEFAULT_RUNS,
     TABLE_FORMATS,
-    existing_folder,
     fail_on_option,
     reduction_options,
     reduction_settings,
@@ -32,6 +37,7 @@ from des_cli.cli.stdout import refuse_binary_on_terminal
 from des_cli.errors import ExitCode
 from des_cli.profiles_in.caps import Caps
 from des_cli.profiles_in.setting import AnySetting
+from des_cli.runs_out.forms import Form
 
 
 @click.command(
@@ -63,6 +69,8 @@ Examples:
     type=click.Choice(TABLE_FORMATS),
     help="Format of the command table that -o FILE or -o - writes.  [default: by suffix, or csv]",
 )
+@form_options
+@hz_option
 @click.option(
     "--jobs",
     type=click.IntRange(min=0),
@@ -106,6 +114,8 @@ def reduce(
     caps: Caps,
     out: str | None,
     table_format: str | None,
+    words: FormWords,
+    hz: float | None,
     jobs: int,
     scheduler: str | None,
     store: str | None,
@@ -126,7 +136,9 @@ def reduce(
     and --set.
     """
     several = len(profiles) > 1 or bool(grid)
-    form = _table_format(out, table_format, several=several)
+    form = form_of(out, table_format, words, hz)
+    if form is not None and several:
+        _refuse_one_table()
     if form is not None and resume:
         raise click.UsageError("--resume needs run folders: a table does not tell its profile.")
     if store is not None and form is not None:
@@ -134,12 +146,12 @@ def reduce(
     if scheduler is not None:
         _refuse_beside_scheduler(form)
     if out == STANDARD_STREAM and not dry_run:
-        refuse_binary_on_terminal(form)
+        refuse_binary_on_terminal(None if form is None else form.kind)
     stdin = read_stdin(profiles, caps)
     output = Output(
         out=DEFAULT_RUNS if out is None else out,
         out_is_parent=out is None or several,
-        table_format=form,
+        **output_form(form),
         plots=not no_plots,
         overwrite=overwrite,
         resume=resume,
@@ -170,7 +182,7 @@ def reduce(
     return run_batch(console, parts, jobs, keep_going, *there, distinct=bool(grid))
 
 
-def _refuse_beside_scheduler(form: TableFormat | None) -> None:
+def _refuse_beside_scheduler(form: Form | None) -> None:
     """Refuse what a cluster cannot do."""
     if form is not None:
         raise click.UsageError("--scheduler needs run folders: name a folder with -o DIR.")
@@ -182,27 +194,3 @@ def _refuse_one_table() -> NoReturn:
     raise click.UsageError(
         "one command table cannot hold several profiles: name a folder with -o DIR."
     )
-
-
-def _table_format(out: str | None, named: str | None, *, several: bool) -> TableFormat | None:
-    """Return the format of the command table, or None where a run folder is meant."""
-    if out is None:
-        if named is not None:
-            raise click.UsageError(
-                "--format is for a command table: add -o FILE, or -o - for stdout."
-            )
-        return None
-    suffix = Path(out).suffix.lower().removeprefix(".")
-    to_stdout = out == STANDARD_STREAM
-    is_table = to_stdout or suffix in TABLE_FORMATS or named is not None
-    if not to_stdout and existing_folder(out):
-        if named is not None:
-            raise click.UsageError(f"--format is for a command table, and {out} is a folder.")
-        return None
-    if not is_table:
-        return None
-    if several:
-        _refuse_one_table()
-    if named is not None and suffix in TABLE_FORMATS and suffix != named:
-        raise click.UsageError(f"--format {named} contradicts the suffix of {out}.")
-    return cast(TableFormat, named or (suffix if suffix in TABLE_FORMATS else "csv"))

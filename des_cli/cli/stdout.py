@@ -43,5 +43,11 @@ def refuse_binary_on_terminal(table_format: str | None) -> None:
     ------
     click.UsageError
     """
-    if table_format == "parquet" and sys.stdout is not None and sys.stdout.isatty():
-        raise click.UsageError("parquet is not for a terminal: redirect stdout, or -o FILE.")
+    if (
+        table_format in ("parquet", "xlsx", "mcap")
+        and sys.stdout is not None
+        and sys.stdout.isatty()
+    ):
+        raise click.UsageError(
+            f"{table_format} is not for a terminal: redirect stdout, or -o FILE."
+        )

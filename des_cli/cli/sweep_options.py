@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import os
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -14,7 +14,7 @@ import click
 
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.options import TABLE_FORMATS, read_budgets, without_percent
-from des_cli.errors import Complaint, FileAccessError
+from des_cli.cli.outputs import files_held
 from des_cli.model.metric import STUDY_METRIC
 
 DEFAULT_METRIC, DEFAULT_BUDGETS = STUDY_METRIC, (0.01, 0.02, 0.05, 0.1)
@@ -87,6 +87,9 @@ def point_format(out: str | None, named: str | None) -> str:
     suffix = "" if out == STANDARD_STREAM else Path(out).suffix.lower().removeprefix(".")
     if named is not None and suffix in TABLE_FORMATS and suffix != named:
         raise click.UsageError(f"--format {named} contradicts the suffix of {out}.")
+    if named is None and suffix not in ("", *TABLE_FORMATS):
+        known = f"{', '.join(f'.{each}' for each in TABLE_FORMATS[:-1])} or .{TABLE_FORMATS[-1]}"
+        raise click.UsageError(f"{out}: .{suffix} is no format of a curve: name it {known}.")
     return named or (suffix if suffix in TABLE_FORMATS else "csv")
 
 
@@ -110,36 +113,10 @@ def refuse_budgets(reduction: dict[str, Any], swept: Budgets | None) -> None:
 @contextmanager
 def outputs_held(out: str | None, plot: str | None, overwrite: bool) -> Iterator[None]:
     """Refuse before solving what would be refused when writing, and keep other runs off it."""
-    from des_cli.runs_out.lock import locked
-
     if plot is not None and Path(plot).suffix.lower() != ".png":
         raise click.UsageError(f"--plot draws a PNG: name it FILE.png, not {plot}.")
-    names = [name for name in (out, plot) if name not in (None, STANDARD_STREAM)]
+    names = [name for name in (out, plot) if name is not None and name != STANDARD_STREAM]
     if len({os.path.realpath(name) for name in names}) < len(names):
         raise click.UsageError(f"--out and --plot both name {plot}: give each a file of its own.")
-    _refuse_existing(names, overwrite)
-    with ExitStack() as stack:
-        for name in names:
-            stack.enter_context(locked(Path(name)))
-        # Who held one may have written it meanwhile.
-        _refuse_existing(names, overwrite)
+    with files_held(names, overwrite):
         yield
-
-
-def _refuse_existing(names: Sequence[str], overwrite: bool) -> None:
-    from des_cli.runs_out.atomic import exists, require_file
-
-    complaints: list[Complaint] = []
-    for name in names:
-        path = Path(name)
-        try:
-            require_file(path)
-            if not path.parent.is_dir():
-                what = "cannot be written: its folder does not exist"
-                complaints.append(Complaint(name, what))
-            elif path.is_file() and not overwrite:
-                raise exists(path)
-        except FileAccessError as error:
-            complaints += error.complaints
-    if complaints:
-        raise FileAccessError(complaints)

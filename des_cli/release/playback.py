@@ -18,7 +18,9 @@ from des_cli.model.arrays import Floats
 from des_cli.model.command_table import CommandTable
 from des_cli.model.joint_rows import JointRows
 from des_cli.model.machine import JOINTS, Machine, Seat
+from des_cli.model.run import Check
 from des_cli.release.clocked import Clock, Clocked
+from des_cli.verify.limits import LIMIT_TOLERANCE
 from des_cli.verify.table import check_against
 
 LAST_ROW = 1e-8
@@ -84,6 +86,28 @@ class Playback:
                 curves[j] = beside_rows(table.t, columns[:, [j]], spread, rates=j == 0)
                 tries[j] += 1
 
+    def own_rows(self, *, bounded: bool = True) -> JointRows:
+        """Return the rows of the table, with the rates and accelerations of a curve through them.
+
+        Who joins rows by their positions, rates and accelerations joins them by that curve.
+
+        Parameters
+        ----------
+        bounded : bool
+            Whether these are not to tell more than the limits, which the rows keep: the curve
+            through rows at a limit may pass it a little.
+        """
+        table = self.table
+        columns = table.values[:, 1:]
+        curves = [through_rows(table.t, columns[:, [j]]) for j in range(len(JOINTS))]
+        angle, speed, acceleration = self._states(curves, table.t, 1.0)
+        angle[:, 1:], speed[:, 0] = table.position, table.arm_rate
+        if bounded:
+            for values, quantity in ((speed, "rate"), (acceleration, "acceleration")):
+                most = np.array([getattr(limit, quantity) for limit in self.machine.limits])
+                values[:] = np.clip(values, -most, most)
+        return JointRows(table.t, angle, speed, acceleration)
+
     def count(self, clock: Clock) -> int:
         """Return how many rows of the clock lie in the table."""
         length = float(self.table.t[-1] - self.table.t[0]) / clock.rate
@@ -120,7 +144,10 @@ class Playback:
         return Clocked(
             ended,
             count,
-            tuple(check_against(self.machine, self.seat, ended.commands, self.arm_start)),
+            (
+                *check_against(self.machine, self.seat, ended.commands, self.arm_start),
+                *_told(self.machine, ended),
+            ),
             np.max(np.abs(np.column_stack(on_rows) - table.values[:, 1:]), axis=0),
         )
 
@@ -163,6 +190,20 @@ class Playback:
         after = ticks / clock.hz - length
         states = zip(*(stop.at(after) for stop in stops), strict=True)
         yield JointRows(start + ticks / clock.hz, *(np.column_stack(each) for each in states))
+
+
+def _told(machine: Machine, rows: JointRows) -> Iterator[Check]:
+    """Measure the rates and accelerations that are told beside the rows."""
+    for j, (joint, limit) in enumerate(zip(JOINTS, machine.limits, strict=True)):
+        for quantity, values in (("rate", rows.rate), ("acceleration", rows.acceleration)):
+            bound = getattr(limit, quantity)
+            if math.isfinite(bound):
+                yield Check(
+                    f"rows.{joint}.{quantity}",
+                    f"relative excess of the {joint}'s {quantity} at a row over its limit",
+                    float(np.max(np.abs(values[:, j]))) / bound - 1.0,
+                    LIMIT_TOLERANCE,
+                )
 
 
 def _meet(

@@ -135,6 +135,26 @@ def test_holding_what_moves_is_refused_and_what_rests_ends_in_time(
     assert ", then held for 2 s" in held.stderr
 
 
+@pytest.mark.parametrize("preset", ["halstreamer", "veristand", "simulink"])
+def test_lines_are_those_that_export_writes(
+    invoke, table: str, patient: list[float], preset: str
+) -> None:
+    fed = invoke("feed", table, "--at-end", "stop", "--preset", preset)
+    exported = invoke("export", table, "--hz", "100", "--preset", preset, "-o", "-")
+    assert (fed.exit_code, exported.exit_code) == (0, 0)
+    assert fed.stdout == exported.stdout
+
+
+def test_columns_go_on_while_the_last_row_is_held(invoke, patient: list[float]) -> None:
+    columns = ("--columns", "elapsed_ms,arm_deg", "--no-header", "--out-separator", "space")
+    held = ("--at-end", "hold", "--hold-s", "3")
+    result = invoke("feed", "-", *held, *columns, input=csv_of(resting()))
+    assert result.exit_code == 0, result.stderr
+    rows = np.array([line.split() for line in result.stdout.splitlines()], float)
+    assert rows[:, 0].tolist() == [10.0 * number for number in range(701)]
+    np.testing.assert_allclose(np.diff(rows[:, 1]), np.degrees(0.01))
+
+
 def test_a_dry_run_sends_nothing(invoke, table: str, patient: list[float]) -> None:
     result = invoke("feed", table, "--dry-run", "--hz", "130")
     assert (result.exit_code, result.stdout) == (0, "")

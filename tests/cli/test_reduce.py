@@ -75,6 +75,35 @@ def test_format_by_name(invoke, small: str, tmp_path) -> None:
     assert csv_rows((tmp_path / "x.txt").read_text()).shape == (21, 4)
 
 
+def test_an_unknown_suffix_is_refused_and_none_is_a_folder(invoke, small: str, tmp_path) -> None:
+    result = invoke("reduce", small, "-o", "x.foo")
+    assert result.exit_code == 2
+    assert ".foo is no format of a table: name it .csv, .ndjson, .json, .parquet" in result.stderr
+    assert not (tmp_path / "x.foo").exists()
+    for name in ("x", "v1.2", "x.foo/"):
+        assert invoke("-q", "reduce", small, "--no-plots", "-o", name).exit_code == 0
+        assert (tmp_path / name / "commands.csv").is_file()
+
+
+def test_a_table_in_the_form_of_another_program(invoke, small: str, tmp_path) -> None:
+    options = ("--control", "free", "--axes", "seat", "--r1", "2,2,2", "--limits", "enforce")
+    budget = ("--budget", "seat_rate_deviation_relative=0.05")
+    reduce = ("reduce", small, *options, *budget)
+    assert invoke(*reduce, "-o", "plain.csv").exit_code == 0
+    assert invoke(*reduce, "-o", "x.txt", "--preset", "halstreamer").exit_code == 0
+    plain = csv_rows((tmp_path / "plain.csv").read_text())
+    np.testing.assert_allclose(np.loadtxt(tmp_path / "x.txt"), plain[:, 1:], rtol=1e-14)
+    columns = ("--columns", "t_s,arm_rad,fork_rad_s", "--hz", "130")
+    result = invoke(*reduce, "-o", "-", *columns)
+    assert result.stdout.startswith("t_s,arm_rad,fork_rad_s\n")
+    assert len(result.stdout.splitlines()) == 1 + 131
+    failed = invoke(*reduce, "-o", "x.txt", "--preset", "halstreamer", "--fail-on", "start")
+    assert failed.exit_code == 1
+    two = invoke("reduce", small, "cobra", "-o", "x.yaml", "--preset", "ros2")
+    assert two.exit_code == 2
+    assert "one command table cannot hold several profiles" in two.stderr
+
+
 def test_stdin_is_a_profile(invoke, small: str, tmp_path) -> None:
     result = invoke("reduce", "-", "-o", "-", input=(tmp_path / small).read_bytes())
     assert result.exit_code == 0
