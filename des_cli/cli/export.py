@@ -97,8 +97,8 @@ def _write(
     from des_cli.release.playback import Playback
     from des_cli.runs_out.atomic import write_file
 
-    playback = Playback(verdict.table, verdict.machine, verdict.seat, verdict.arm_start)
-    rows = Export(target, playback, form)
+    playback = Playback(verdict.table, verdict.machine, verdict.seat, verdict.arm_start, target)
+    rows = Export(playback, form)
     if out == STANDARD_STREAM:
         rows.require(rows.data)
         write_data(rows.data)

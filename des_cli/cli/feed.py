@@ -109,7 +109,7 @@ def feed(
     code = tell_verdict(console, target, verdict, fail_on)
     if code != ExitCode.DONE:
         return code
-    played = Playback(verdict.table, verdict.machine, verdict.seat, verdict.arm_start)
+    played = Playback(verdict.table, verdict.machine, verdict.seat, verdict.arm_start, target)
     clock = Clock(hz, rate, at_end)
     if played.count(clock) > MOST_ROWS:
         raise click.UsageError(f"these are more than {MOST_ROWS:,} rows: give a lower --hz.")

@@ -66,10 +66,13 @@ def through_rows(t: Floats, values: Floats) -> RowCurve:
     return RowCurve(CubicSpline(t, values, bc_type="not-a-knot"))
 
 
-def beside_rows(t: Floats, values: Floats, spread: float = 2.0, *, rates: bool = False) -> RowCurve:
+def beside_rows(
+    t: Floats, values: Floats, spread: float = 2.0, slack: float = 1.0, *, rates: bool = False
+) -> RowCurve:
     """Return the cubic B-spline whose control points are the rows.
 
-    Its ends keep the acceleration of the first and the last three rows.
+    It begins and ends at the first and the last row where these are at rest, or next to it.
+    Elsewhere its ends keep the acceleration of the first and the last three rows.
 
     Parameters
     ----------
@@ -79,6 +82,9 @@ def beside_rows(t: Floats, values: Floats, spread: float = 2.0, *, rates: bool =
     values : (n, m) array
     spread : float
         Distance between these points, over the median step.
+    slack : float
+        How much more than anywhere else the jerk may be at an end at rest; with 1 every
+        derivative is a mean of the rows' divided differences.
     rates : bool
         Whether the points are to lie on the straight lines between the rows, which keep a limit of
         the first derivative, and not on the spline through them, which keeps the higher ones
@@ -89,8 +95,7 @@ def beside_rows(t: Floats, values: Floats, spread: float = 2.0, *, rates: bool =
     if len(t) <= LEAST_CONTROLS:
         return through_rows(t, values)
     step, controls = _controls(t, values, spread, rates=rates)
-    first = 3.0 * (controls[0] - controls[1]) + controls[2]
-    last = 3.0 * (controls[-1] - controls[-2]) + controls[-3]
+    first, last = _beyond(controls[::-1], slack), _beyond(controls, slack)
     c0, c1, c2, c3 = (
         np.vstack([first, controls, last])[i : i + len(controls) - 1] for i in range(4)
     )
@@ -102,6 +107,19 @@ def beside_rows(t: Floats, values: Floats, spread: float = 2.0, *, rates: bool =
         (c2 + 4.0 * c1 + c0) / 6.0,
     ]
     return RowCurve(PPoly(np.stack(pieces), t[0] + step * np.arange(len(controls))))
+
+
+def _beyond(controls: Floats, slack: float) -> Floats:
+    """Return the control point after the last one, (m,).
+
+    Without acceleration at the end the curve ends at the last point. Where taking that back
+    needs a third difference of more than so many times the largest, the acceleration goes on as
+    it was.
+    """
+    before, last = controls[-2], controls[-1]
+    bend = last - 2.0 * before + controls[-3]
+    most = np.max(np.abs(np.diff(controls, 3, axis=0)), axis=0, initial=0.0)
+    return np.asarray(2.0 * last - before + np.where(np.abs(bend) <= slack * most, 0.0, bend))
 
 
 def _controls(t: Floats, values: Floats, spread: float, *, rates: bool) -> tuple[float, Floats]:

@@ -30,10 +30,8 @@ class Export:
 
     Parameters
     ----------
-    name : str
-        What messages call it.
     playback : Playback
-        The table and its machine.
+        The table and its machine, under the name that messages call it.
     form : Form
     enforced : bool
         Whether rows at other times are to keep the limits.
@@ -46,11 +44,11 @@ class Export:
         If there are more rows than the form has room for.
     """
 
-    def __init__(self, name: str, playback: Playback, form: Form, *, enforced: bool = True) -> None:
-        self.name, self.form = name, form
-        self.rows = _rows(name, playback, form, enforced=enforced)
+    def __init__(self, playback: Playback, form: Form, *, enforced: bool = True) -> None:
+        self.name, self.form = playback.label, form
+        self.rows = _rows(playback, form, enforced=enforced)
         if not form.timed:
-            _require_even(name, self.rows)
+            _require_even(self.name, self.rows)
         self.data = encode_rows(self.rows, form, playback.machine, playback.seat)
 
     def require(self, data: bytes) -> None:
@@ -94,18 +92,19 @@ def export_of_run(run: Run, form: Form, fail_on: frozenset[str] = frozenset()) -
         run.profile.machine,
         run.seat,
         float(run.commands.angle[0, 0]),
+        run.profile.name,
     )
     enforced = run.profile.reduction.limits != "warn"
-    return Export(run.profile.name, playback, form, enforced=enforced)
+    return Export(playback, form, enforced=enforced)
 
 
-def _rows(name: str, playback: Playback, form: Form, *, enforced: bool) -> JointRows:
+def _rows(playback: Playback, form: Form, *, enforced: bool) -> JointRows:
     if form.hz is None:
         return playback.own_rows(bounded=enforced)
     clocked = playback.on(Clock(form.hz))
     if enforced and clocked.failed:
         raise NotReleasedError(
-            [Complaint(name, f"at {form.hz:g} Hz: {check}") for check in clocked.failed]
+            [Complaint(playback.label, f"at {form.hz:g} Hz: {check}") for check in clocked.failed]
         )
     return clocked.rows
 

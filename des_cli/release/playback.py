@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from des_cli.errors import Complaint, UsageError
 from des_cli.kinematics.row_curve import RowCurve, beside_rows, through_rows
 from des_cli.kinematics.standstill import come_to_rest
 from des_cli.model.arrays import Floats
@@ -23,11 +24,15 @@ from des_cli.release.clocked import Clock, Clocked
 from des_cli.verify.limits import LIMIT_TOLERANCE
 from des_cli.verify.table import check_against
 
+LEAST_ROWS = 2
+"""Of a table on a clock, from which a rate follows."""
+
 LAST_ROW = 1e-8
 """By how much [s] the last row may lie before a tick and is still fed at it."""
 
-SPREADS = (2.0, 3.0)
-"""Distances of the control points, in median steps, that are tried where rows are uneven."""
+TRIES = ((2.0, 2.0), (2.0, 1.0), (3.0, 1.0))
+"""Distance of the control points where rows are uneven, in median steps, and slack of the jerk at
+an end at rest: what is tried of curves beside the rows, the nearest to them first."""
 
 HELD_ROWS = 4
 """Rows of what is held that are measured: a jerk is one of four rows."""
@@ -56,20 +61,32 @@ class Playback:
     machine, seat : Machine, Seat
     arm_start : float
         Where the arm is at the first row [rad].
+    label : str
+        What messages call the table.
     """
 
     table: CommandTable
     machine: Machine
     seat: Seat
     arm_start: float = 0.0
+    label: str = ""
 
     def on(self, clock: Clock) -> Clocked:
         """Return the rows on a clock, each joint through the table's rows where its limits allow.
 
         The others pass beside their rows (``kinematics.row_curve``). What the checks say of the
         last attempt is what they say.
+
+        Raises
+        ------
+        UsageError
+            If the table has no two rows on the clock.
         """
         table = self.table
+        if self.count(clock) < LEAST_ROWS:
+            length = f"{table.t[-1] - table.t[0]:g} s at rate {clock.rate:g}"
+            what = f"it lasts {length}: less than two rows at {clock.hz:g} Hz"
+            raise UsageError([Complaint(self.label, what)])
         columns = table.values[:, 1:]
         curves = [through_rows(table.t, columns[:, [j]]) for j in range(len(JOINTS))]
         tries = [0] * len(JOINTS)
@@ -77,13 +94,12 @@ class Playback:
             clocked = self._rows(curves, clock)
             broken = {check.key.split(".")[1] for check in clocked.failed}
             worse = [
-                j for j, joint in enumerate(JOINTS) if joint in broken and tries[j] < len(SPREADS)
+                j for j, joint in enumerate(JOINTS) if joint in broken and tries[j] < len(TRIES)
             ]
             if not worse:
                 return clocked
             for j in worse:
-                spread = SPREADS[tries[j]]
-                curves[j] = beside_rows(table.t, columns[:, [j]], spread, rates=j == 0)
+                curves[j] = beside_rows(table.t, columns[:, [j]], *TRIES[tries[j]], rates=j == 0)
                 tries[j] += 1
 
     def own_rows(self, *, bounded: bool = True) -> JointRows:
@@ -169,9 +185,9 @@ class Playback:
         if clock.end == "stop":
             return
         table = self.table
-        angle, rate, acceleration = (
-            each[0] for each in self._states(curves, table.t[-1:], clock.rate)
-        )
+        states = self._states(curves, table.t[-1:], clock.rate)
+        _meet(table, table.t[-1:], states, clock.rate)
+        angle, rate, acceleration = (each[0] for each in states)
         start, length = table.t[0], (table.t[-1] - table.t[0]) / clock.rate
         if clock.end == "hold":
             ticks = count + np.arange(HELD_ROWS)
@@ -188,8 +204,8 @@ class Playback:
         longest = max(stop.duration for stop in stops)
         ticks = count + np.arange(math.ceil((length + longest) * clock.hz) - count + RESTING_ROWS)
         after = ticks / clock.hz - length
-        states = zip(*(stop.at(after) for stop in stops), strict=True)
-        yield JointRows(start + ticks / clock.hz, *(np.column_stack(each) for each in states))
+        ways = zip(*(stop.at(after) for stop in stops), strict=True)
+        yield JointRows(start + ticks / clock.hz, *(np.column_stack(each) for each in ways))
 
 
 def _told(machine: Machine, rows: JointRows) -> Iterator[Check]:

@@ -52,6 +52,19 @@ def test_the_curve_through_rows_that_ride_a_limit_overshoots_it() -> None:
     assert np.max(np.abs(beside_rows(t, values).at(fine, 3)[:, 0])) <= third * (1 + 1e-9)
 
 
+def test_beside_rows_at_rest_it_begins_and_ends_at_them() -> None:
+    t = 0.1 * np.arange(41)
+    u = t / t[-1]
+    values = np.column_stack([u**3 * (10.0 - 15.0 * u + 6.0 * u**2), np.sin(t)])
+    ends = beside_rows(t, values, slack=2.0).at(t[[0, -1]])
+    np.testing.assert_allclose(ends[:, 0], values[[0, -1], 0], atol=1e-15)
+    # The other column moves on at its end, and is passed beside there as elsewhere.
+    assert ends[0, 1] == pytest.approx(0.0, abs=1e-15)
+    assert abs(ends[1, 1] - values[-1, 1]) == pytest.approx(
+        0.1**2 / 6.0 * abs(np.sin(3.9)), rel=0.1
+    )
+
+
 def test_a_shorter_last_step_changes_nothing_before_it() -> None:
     t, values = rows()
     whole = beside_rows(t, values)

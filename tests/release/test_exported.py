@@ -28,7 +28,7 @@ MODULES = {"xlsx": "openpyxl", "mcap": "mcap"}
 
 
 def playback(hz: float = 100.0) -> Playback:
-    return Playback(swaying(hz, 0.5), DES, Seat())
+    return Playback(swaying(hz, 0.5), DES, Seat(), 0.0, "t")
 
 
 def needs(form: Form) -> None:
@@ -44,7 +44,7 @@ def test_what_is_written_reads_back(name: str, hz: float | None) -> None:
 
     form = replace(FORMS[name], hz=hz)
     needs(form)
-    export = Export("t", playback(), form)
+    export = Export(playback(), form)
     assert len(export.rows.t) == (51 if hz is None else 66)
     export.require(export.data)
 
@@ -53,12 +53,12 @@ def test_what_is_written_reads_back(name: str, hz: float | None) -> None:
 def test_other_rows_are_refused(name: str) -> None:
     form = FORMS[name]
     needs(form)
-    right, other = (Export("t", Playback(table, DES, Seat()), form) for table in TWO)
+    right, other = (Export(Playback(table, DES, Seat(), 0.0, "t"), form) for table in TWO)
     with pytest.raises(
         NotReleasedError, match=r"t: what was written is wrong: row \d+ holds other"
     ):
         right.require(other.data)
-    fewer = Export("t", Playback(swaying(100.0, 0.4), DES, Seat()), form)
+    fewer = Export(Playback(swaying(100.0, 0.4), DES, Seat(), 0.0, "t"), form)
     with pytest.raises(NotReleasedError, match="it has 41 rows, not 51"):
         right.require(fewer.data)
 
@@ -78,33 +78,33 @@ TWO = (swaying(100.0, 0.5), _with_row(6))
 def test_bytes_that_were_cut_or_are_others_are_refused(name: str) -> None:
     form = FORMS[name]
     needs(form)
-    export = Export("t", playback(), form)
+    export = Export(playback(), form)
     for broken in (export.data[: len(export.data) // 2], b"", b"nonsense\n"):
         with pytest.raises(NotReleasedError, match="what was written is wrong"):
             export.require(broken)
 
 
 def test_rows_without_times_must_be_even() -> None:
-    table = Playback(uneven(swaying()), DES, Seat())
+    table = Playback(uneven(swaying()), DES, Seat(), 0.0, "t")
     with pytest.raises(NotReleasedError, match="not evenly spaced, and this form tells no times"):
-        Export("t", table, PRESETS["halstreamer"])
+        Export(table, PRESETS["halstreamer"])
 
 
 def test_rows_between_the_tables_keep_the_limits_or_are_refused() -> None:
     form = Form(columns=COMMANDS, hz=130.0)
-    export = Export("t", Playback(riding(), DES, Seat()), form)
+    export = Export(Playback(riding(), DES, Seat(), 0.0, "t"), form)
     assert all(check.ok for check in check_against(DES, Seat(), export.rows.commands))
     table = riding()
     wild = type(table)(table.t, table.arm_rate, 3.0 * table.position)
     with pytest.raises(NotReleasedError, match="at 130 Hz: relative excess of the fork's jerk"):
-        Export("t", Playback(wild, DES, Seat()), form)
+        Export(Playback(wild, DES, Seat(), 0.0, "t"), form)
     # As the gate does with a profile that only wants to be told.
-    assert len(Export("t", Playback(wild, DES, Seat()), form, enforced=False).data) > 1000
+    assert len(Export(Playback(wild, DES, Seat(), 0.0, "t"), form, enforced=False).data) > 1000
 
 
 def test_own_rows_tell_no_more_than_the_limits() -> None:
     table = riding()
-    rows = Playback(table, DES, Seat()).own_rows()
+    rows = Playback(table, DES, Seat(), 0.0, "t").own_rows()
     np.testing.assert_array_equal(rows.commands.values, table.values)
     for quantity in ("rate", "acceleration"):
         most = [getattr(limit, quantity) for limit in DES.limits]

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from des_cli.errors import UsageError
 from des_cli.model.command_table import CommandTable
 from des_cli.model.joint_rows import JointRows
 from des_cli.model.machine import Machine, OccupantBounds, Seat
@@ -155,6 +156,24 @@ def test_the_bounds_for_the_occupant_are_measured_too() -> None:
     assert {check.key for check in playback.on(Clock(100.0, 3.0)).failed} >= {
         "occupant.angular_acceleration"
     }
+
+
+@pytest.mark.parametrize("end", ["stop", "ramp"])
+def test_a_table_without_two_rows_on_the_clock_is_refused(end: str) -> None:
+    table = swaying(400.0, 0.005)
+    with pytest.raises(
+        UsageError, match=r"it lasts 0\.005 s at rate 1: less than two rows at 100 Hz"
+    ):
+        play(table).on(Clock(100.0, 1.0, end))  # type: ignore[arg-type]
+    assert len(play(table).on(Clock(200.0)).rows.t) == 2
+
+
+@pytest.mark.parametrize("rows", [2, 3, 4, 5])
+def test_short_tables_are_played(rows: int) -> None:
+    table = swaying_at(0.1 * np.arange(rows))
+    clocked = play(table).on(Clock(100.0, 1.0, "ramp"))
+    assert clocked.failed == ()
+    assert clocked.table_rows == 10 * (rows - 1) + 1
 
 
 def test_the_last_row_is_on_the_clock_or_the_tick_before_it_ends() -> None:
