@@ -18,10 +18,7 @@ from des_cli.kinematics.attitude import (
 )
 from des_cli.kinematics.chain import Chain, chain_of, joint_axes, seat_rotation
 from des_cli.kinematics.coriolis import angular_acceleration_split
-from des_cli.kinematics.orientation import (
-    body_jacobian,
-    smallest_singular_value,
-)
+from des_cli.kinematics.orientation import body_jacobian, least_singular_value
 from des_cli.kinematics.rate_field import RateField
 from des_cli.kinematics.refinement import as_they_are, resolve
 from des_cli.model.arrays import Flags, Floats
@@ -71,7 +68,7 @@ def _from_joints(chain: Chain, profile: Profile, command: JointCommands) -> Desi
     commanded += 0.0  # a negative zero would be a sign in the command table
     return DesiredMotion(
         motion=Motion(profile.t, angle, commanded[:, 0], commanded[:, 1]),
-        singular_value=smallest_singular_value(body_jacobian(chain, angle)),
+        least_singular_value=least_singular_value(chain, angle),
         damped=np.zeros(len(profile.t), dtype=bool),
         residual=np.zeros((len(profile.t), 3)),
     )
@@ -92,7 +89,7 @@ def _from_body_rates(
     motion = Motion(demand.t, angle, rate[:, 0], rate[:, 1])
     return DesiredMotion(
         motion=motion,
-        singular_value=smallest_singular_value(body_jacobian(chain, angle)),
+        least_singular_value=least_singular_value(chain, angle),
         damped=_at_samples(held),
         residual=mean_of_sides(residual),
         attitude_error=float(np.max(geodesic_angle(flown, demanded_attitude))),

@@ -24,6 +24,9 @@ DES to their 3.14 rad/s, and more could not be flown. On the DES it is reached
 "Numerical filtering for the operation of robotic manipulators through
 kinematically singular configurations", J. Robotic Systems 5 (1988)."""
 
+SAME_COSINE = 16.0 * float(np.finfo(np.float64).eps)
+"""Difference of cosines between axes that may be rounding."""
+
 DAMPING_PER_THRESHOLD = math.sqrt(0.5)
 """Largest damping factor over the threshold. With ``lambda = lambda_max (1 -
 (s/threshold)^2)``, a smooth form of Nakamura and Hanafusa's (J. Dynamic
@@ -62,6 +65,33 @@ def body_jacobian(chain: Chain, angles: Floats) -> Floats:
 def smallest_singular_value(jacobian: Floats) -> Floats:
     """Return the distance to the singularity, (...), of Jacobians (..., 3, 3)."""
     return np.asarray(np.linalg.svd(jacobian, compute_uv=False)[..., -1])
+
+
+def least_singular_value(chain: Chain, angles: Floats) -> float:
+    """Return the least distance to the singularity along joint angles (n, 3).
+
+    The axes of arm and fork keep the angle between them, and so do those of fork and cab.
+    The squared singular values are therefore eigenvalues of a matrix that is linear in one
+    number, the cosine between the axes of arm and cab. The smallest is the least of linear
+    functions of it, which is concave: it is least where the cosine is least or largest.
+    """
+    cosine = _arm_to_cab(chain, angles[:, 1])
+    ends = (cosine <= np.min(cosine) + SAME_COSINE) | (cosine >= np.max(cosine) - SAME_COSINE)
+    rows = np.flatnonzero(ends)
+    # A cosine has no slope on the singularity itself, where rounding hides which row is
+    # nearest; a fork that stands still is at one angle on all rows.
+    _, first = np.unique(angles[rows, 1], return_index=True)
+    return float(np.min(smallest_singular_value(body_jacobian(chain, angles[rows[first]]))))
+
+
+def _arm_to_cab(chain: Chain, fork: Floats) -> Floats:
+    """Return the cosine between the axes of arm and cab, (n,), at angles of the fork."""
+    x, y, z = chain.constants[1][2, :3]
+    toward = chain.constants[2][:3, 2]
+    along, across = x * toward[0] + y * toward[1], y * toward[0] - x * toward[1]
+    _, sign, _ = chain.signs
+    turned = along * np.cos(fork) + sign * across * np.sin(fork) + z * toward[2]
+    return np.asarray(chain.signs[0] * chain.signs[2] * turned)
 
 
 def damped_inverse_rates(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -13,6 +13,13 @@ from des_cli.model.arrays import Flags, Floats, freeze
 
 if TYPE_CHECKING:
     from des_cli.model.profile import BodyRates
+
+
+PIECE = 8192
+"""Samples of a piece of a motion: what is made of one stays in a processor's cache."""
+
+_BESIDE = 2
+"""Samples on either side that a piece has beside its own: a jerk is made of three."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +64,20 @@ class Motion:
             column[:, joints] = source[:, joints]
         return Motion(self.t, *columns)
 
+    def pieces(self) -> Iterator[Piece]:
+        """Yield the motion in pieces, for what is measured on long ones sample by sample."""
+        count = len(self.t)
+        for first in range(0, count, PIECE):
+            last = min(first + PIECE, count)
+            begin, end = max(first - _BESIDE, 0), min(last + _BESIDE, count)
+            part = Motion(
+                self.t[begin:end],
+                self.angle[begin:end],
+                self.rate_start[begin : end - 1],
+                self.rate_end[begin : end - 1],
+            )
+            yield Piece(part, slice(first - begin, last - begin), first)
+
     @cached_property
     def step(self) -> Floats:
         """Length of each interval, (n - 1,) [s]."""
@@ -96,6 +117,30 @@ class Motion:
     def rate_sides(self) -> Floats:
         """Rates at start and end of each interval, (n - 1, 2, 3) [rad/s]."""
         return np.stack([self.rate_start, self.rate_end], axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """Samples of a motion with some on either side, so that they have all their neighbours.
+
+    Parameters
+    ----------
+    motion : Motion
+        The samples and those beside them.
+    own : slice
+        Which of these are the piece's own.
+    first : int
+        Where the first of its own stands in the whole motion.
+    """
+
+    motion: Motion
+    own: slice
+    first: int
+
+    @property
+    def own_intervals(self) -> slice:
+        """The intervals that begin at its own samples."""
+        return slice(self.own.start, min(self.own.stop, len(self.motion.t) - 1))
 
 
 @dataclass(frozen=True)
@@ -186,8 +231,8 @@ class DesiredMotion:
     Parameters
     ----------
     motion : Motion
-    singular_value : (n,) array
-        Smallest singular value of the orientation Jacobian at each sample.
+    least_singular_value : float
+        Of the orientation Jacobian, the smallest at any sample.
     damped : (n,) array of bool
         Where the inverse was damped or a rate was held at its limit.
     residual : (n, 3) array
@@ -209,7 +254,7 @@ class DesiredMotion:
     """
 
     motion: Motion
-    singular_value: Floats
+    least_singular_value: float
     damped: Flags
     residual: Floats
     attitude_error: float = 0.0

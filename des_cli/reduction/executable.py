@@ -20,7 +20,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, JointLimits, Machine
 from des_cli.model.motion import Motion
 from des_cli.reduction.free.limit_rows import LimitRows
-from des_cli.reduction.limits import angle_magnitude, find_violations, measure_peaks
+from des_cli.reduction.limits import find_violations, largest_angle, measure_peaks
 from des_cli.reduction.reference import sample_motion
 from des_cli.solver.band import SymmetricBand
 from des_cli.solver.quadratic import minimise_quadratic
@@ -168,7 +168,7 @@ def fit_for_table(
     drawn = tuple(limits)
     for _ in range(TABLE_ROUNDS):
         found = fit_executable(grid, desired, drawn, ends)
-        reach = np.max(angle_magnitude(sample_spline(found, t)), axis=0)
+        reach = largest_angle(sample_spline(found, t))
         excess = reach - np.array([limit.angle for limit in limits])
         if found.trouble or np.all(excess <= 0.0):
             break

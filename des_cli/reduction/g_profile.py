@@ -24,7 +24,7 @@ from des_cli.kinematics.g_motion import (
     steady_joints,
 )
 from des_cli.kinematics.onset import largest_onset
-from des_cli.kinematics.orientation import body_jacobian, smallest_singular_value
+from des_cli.kinematics.orientation import least_singular_value
 from des_cli.kinematics.response import respond
 from des_cli.kinematics.twist import SeatForms, seat_forms
 from des_cli.kinematics.washout import seen_turned, washed_rotation
@@ -107,7 +107,7 @@ def follow_g(profile: Profile, command: GCommand) -> DesiredMotion:
     response = respond(profile.machine, profile.seat, motion)
     return DesiredMotion(
         motion=motion,
-        singular_value=smallest_singular_value(body_jacobian(chain, motion.angle)),
+        least_singular_value=least_singular_value(chain, motion.angle),
         damped=np.zeros(len(profile.t), dtype=bool),
         residual=np.zeros((len(profile.t), 3)),
         shortfall=_shortfall(command, response),

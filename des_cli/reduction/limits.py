@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -13,10 +14,10 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.coriolis import angular_acceleration_split
 from des_cli.kinematics.onset import onsets
 from des_cli.model.arrays import Floats
-from des_cli.model.machine import JOINTS, Machine, Seat
-from des_cli.model.motion import Motion
+from des_cli.model.machine import JOINTS, JointLimits, Machine, Seat
+from des_cli.model.motion import Motion, Piece
 from des_cli.model.response import SeatResponse
-from des_cli.model.run import SeatQuantity, Violation
+from des_cli.model.run import JointQuantity, SeatQuantity, Violation
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that rounding alone may make."""
@@ -51,13 +52,21 @@ class Peaks:
 
 def measure_peaks(motion: Motion) -> Peaks:
     """Return the largest magnitudes of a motion."""
-    return Peaks(
-        angle=np.max(angle_magnitude(motion), axis=0),
-        rate=np.max(np.abs(motion.rate_sides), axis=(0, 1)),
-        acceleration=np.max(acceleration_magnitude(motion), axis=0),
-        jerk=np.max(jerk_magnitude(motion), axis=0),
-        rate_step=np.max(np.abs(motion.rate_step), axis=0, initial=0.0),
-    )
+    measures = (angle_magnitude, _rate, acceleration_magnitude, jerk_magnitude, _rate_step)
+    peaks = np.zeros((len(measures), len(JOINTS)))
+    for piece in motion.pieces():
+        here = [np.max(measure(piece.motion)[piece.own], axis=0) for measure in measures]
+        np.maximum(peaks, here, out=peaks)
+    return Peaks(*peaks)
+
+
+def largest_angle(motion: Motion) -> Floats:
+    """Return the largest angle of each joint, also between samples, (3,) [rad]."""
+    largest = np.zeros(len(JOINTS))
+    for piece in motion.pieces():
+        here = angle_magnitude(piece.motion)[piece.own]
+        np.maximum(largest, np.max(here, axis=0), out=largest)
+    return largest
 
 
 def acceleration_magnitude(motion: Motion) -> Floats:
@@ -117,6 +126,21 @@ def jerk_magnitude(motion: Motion) -> Floats:
     return magnitude
 
 
+def _rate(motion: Motion) -> Floats:
+    """Return the larger rate of both sides of each sample, (n, 3) [rad/s]."""
+    rate = np.zeros_like(motion.angle)
+    rate[:-1] = np.abs(motion.rate_start)
+    rate[1:] = np.maximum(rate[1:], np.abs(motion.rate_end))
+    return rate
+
+
+def _rate_step(motion: Motion) -> Floats:
+    """Return the jump of the rate at each sample, (n, 3) [rad/s]; 0 at the ends."""
+    step = np.zeros_like(motion.angle)
+    step[1:-1] = np.abs(motion.rate_step)
+    return step
+
+
 def _jerk_rounding(motion: Motion, which: Which) -> Floats:
     """Return how much of each sample's jerk may be rounding of doubles, (n, 3) [rad/s^3].
 
@@ -127,7 +151,7 @@ def _jerk_rounding(motion: Motion, which: Which) -> Floats:
     if len(motion.t) < 3:
         return allowance
     step = np.minimum(motion.step[1:], motion.step[:-1])[:, None]
-    rate = np.max(np.abs(motion.rate_sides), axis=1)
+    rate = np.maximum(np.abs(motion.rate_start), np.abs(motion.rate_end))
     allowance[1:-1] = 4.0 * ROUNDING * np.maximum(rate[1:], rate[:-1]) / step**2
     if which == "desired":
         allowance[1:-1, 1:] += 4.0 * ROUNDING * np.abs(motion.angle[1:-1, 1:]) / step**3
@@ -143,38 +167,63 @@ def find_violations(machine: Machine, motion: Motion, which: Which) -> tuple[Vio
     motion : Motion
     which : {"desired", "modified"}
         How the violations call the motion.
+
+    Returns
+    -------
+    tuple of Violation
+        Joint by joint. Asked again for the same motion, as long as that is there, they are
+        not found anew: several steps of a reduction ask.
     """
-    found: list[Violation] = []
-    rate = np.zeros_like(motion.angle)
-    rate[:-1] = np.abs(motion.rate_start)
-    rate[1:] = np.maximum(rate[1:], np.abs(motion.rate_end))
-    acceleration, jerk = acceleration_magnitude(motion), jerk_magnitude(motion)
-    rounding = _jerk_rounding(motion, which)
-    for j, (joint, limit) in enumerate(zip(JOINTS, machine.limits, strict=True)):
-        step = np.zeros(len(motion.t))
-        step[1:-1] = np.abs(motion.rate_step[:, j])
-        # No finite acceleration makes a step: any step beyond rounding is named.
-        for quantity, values, bound, allowance in (
-            ("angle", angle_magnitude(motion)[:, j], limit.angle, 0.0),
-            ("rate", rate[:, j], limit.rate, 0.0),
-            ("acceleration", acceleration[:, j], limit.acceleration, 0.0),
-            ("jerk", jerk[:, j], limit.jerk, rounding[:, j]),
-            ("rate step", step, 0.0, STEP_TOLERANCE),
-        ):
-            broken = np.flatnonzero(values > bound * (1.0 + TOLERANCE) + allowance)
-            if len(broken):
-                found.append(
-                    Violation(
-                        motion=which,
-                        joint=joint,
-                        quantity=quantity,  # type: ignore[arg-type]
-                        peak=float(values[broken].max()),
-                        limit=bound,
-                        from_s=float(motion.t[broken[0]]),
-                        to_s=float(motion.t[broken[-1]]),
-                    )
-                )
-    return tuple(found)
+    known = _known.setdefault(motion, {})
+    key = (machine.limits, which)
+    if key not in known:
+        found: dict[tuple[int, int], Violation] = {}
+        for piece in motion.pieces():
+            for place, violation in _broken(machine.limits, piece, which):
+                before = found.get(place, violation)
+                peak = max(before.peak, violation.peak)
+                found[place] = replace(violation, peak=peak, from_s=before.from_s)
+        known[key] = tuple(found[place] for place in sorted(found))
+    return known[key]
+
+
+_known: WeakKeyDictionary[
+    Motion, dict[tuple[tuple[JointLimits, ...], Which], tuple[Violation, ...]]
+] = WeakKeyDictionary()
+
+
+def _broken(
+    limits: tuple[JointLimits, ...], piece: Piece, which: Which
+) -> Iterator[tuple[tuple[int, int], Violation]]:
+    """Yield what the samples of a piece break, with the numbers of joint and quantity."""
+    motion, own = piece.motion, piece.own
+    t = motion.t[own]
+    none = np.zeros_like(motion.angle)
+    # No finite acceleration makes a step: any step beyond rounding is named.
+    quantities: tuple[tuple[JointQuantity, Floats, Floats], ...] = (
+        ("angle", angle_magnitude(motion), none),
+        ("rate", _rate(motion), none),
+        ("acceleration", acceleration_magnitude(motion), none),
+        ("jerk", jerk_magnitude(motion), _jerk_rounding(motion, which)),
+        ("rate step", _rate_step(motion), none + STEP_TOLERANCE),
+    )
+    for q, (quantity, values, allowance) in enumerate(quantities):
+        bounds = [0.0 if quantity == "rate step" else getattr(each, quantity) for each in limits]
+        beyond = values > np.array(bounds) * (1.0 + TOLERANCE) + allowance
+        for j in np.flatnonzero(np.any(beyond[own], axis=0)):
+            broken = np.flatnonzero(beyond[own, j])
+            yield (
+                (int(j), q),
+                Violation(
+                    motion=which,
+                    joint=JOINTS[j],
+                    quantity=quantity,
+                    peak=float(values[own, j][broken].max()),
+                    limit=bounds[j],
+                    from_s=float(t[broken[0]]),
+                    to_s=float(t[broken[-1]]),
+                ),
+            )
 
 
 def steps_too_short(machine: Machine, motion: Motion, share: float) -> str:
@@ -187,10 +236,13 @@ def steps_too_short(machine: Machine, motion: Motion, share: float) -> str:
     share : float
         Of a jerk limit, that rounding may make at the most.
     """
-    rounding = _jerk_rounding(motion, "modified")
     limit = np.array([limit.jerk for limit in machine.limits])
-    worst, joint = np.unravel_index(np.argmax(rounding / limit), rounding.shape)
-    part = float(rounding[worst, joint] / limit[joint])
+    part, worst, joint = 0.0, 0, 0
+    for piece in motion.pieces():
+        parts = _jerk_rounding(piece.motion, "modified")[piece.own] / limit
+        sample, of = np.unravel_index(np.argmax(parts), parts.shape)
+        if parts[sample, of] > part:
+            part, worst, joint = float(parts[sample, of]), piece.first + int(sample), int(of)
     if part <= share:
         return ""
     step = float(np.min(motion.step[worst - 1 : worst + 1]))

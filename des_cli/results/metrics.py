@@ -218,7 +218,7 @@ def _singularity(asked: DesiredMotion) -> Singularity:
     recorded = asked.recorded_attitude_error
     return Singularity(
         min_abs_cos_fork=float(np.min(np.abs(np.cos(asked.motion.angle[:, 1])))),
-        min_singular_value=float(np.min(asked.singular_value)),
+        min_singular_value=asked.least_singular_value,
         damped_samples=int(np.sum(asked.damped)),
         max_residual_rad_s=float(np.max(np.linalg.norm(asked.residual, axis=1))),
         integration_error_max_deg=float(np.degrees(asked.attitude_error)),

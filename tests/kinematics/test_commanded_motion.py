@@ -68,7 +68,7 @@ class TestJointCommands:
         profile = joint_profile(t, cobra)
         desired = make_desired(profile)
         command, motion = profile.command, desired.motion
-        assert desired.singular_value.min() < 1e-7
+        assert desired.least_singular_value < 1e-7
         np.testing.assert_array_equal(motion.rate_start[:, 1:], command.rate_start)
         np.testing.assert_array_equal(motion.rate_end[:, 1:], command.rate_end)
         np.testing.assert_array_equal(motion.rate[:, 0], command.arm_rate)
@@ -228,7 +228,7 @@ class TestBodyRates:
         for values in (motion.angle, motion.rate_sides, desired.residual):
             assert np.isfinite(values).all()
         assert (np.abs(motion.rate_sides) <= RATE_LIMIT * (1.0 + 1e-12)).all()
-        assert desired.singular_value.min() < 1e-3
+        assert desired.least_singular_value < 1e-3
         assert desired.damped.any()
         assert not desired.damped.all()
         size = np.linalg.norm(desired.residual, axis=1)

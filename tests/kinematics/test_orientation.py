@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,9 +11,10 @@ from des_cli.kinematics.orientation import (
     body_jacobian,
     damped_inverse_rates,
     ground_jacobian,
+    least_singular_value,
     smallest_singular_value,
 )
-from des_cli.model.machine import Seat
+from des_cli.model.machine import DHRow, Seat
 from des_cli.model.machines import DES
 
 CHAIN = chain_of(DES, Seat())
@@ -45,6 +48,35 @@ def test_determinant_and_singular_values_of_the_des(jacobian, seat, rng):
     np.testing.assert_allclose(
         smallest_singular_value(matrices), expected[:, -1], rtol=0, atol=1e-13
     )
+
+
+def test_the_least_singular_value_is_that_of_all_samples(case, rng):
+    """However the fork moves: anywhere, near the singularity, not at all."""
+    for fork in (
+        rng.uniform(-7.0, 7.0, 400),
+        rng.uniform(0.2, 1.2, 400),
+        np.pi / 2 + rng.normal(scale=1e-7, size=400),
+        -np.pi / 2 + 1e-3 + rng.normal(scale=1e-5, size=400),
+        np.full(400, 0.7),
+    ):
+        angles = np.stack([rng.uniform(-7.0, 7.0, 400), fork, rng.uniform(-7.0, 7.0, 400)], -1)
+        expected = np.min(np.linalg.svd(ground_jacobian(case.chain, angles), compute_uv=False))
+        assert least_singular_value(case.chain, angles) == pytest.approx(expected, abs=1e-14)
+
+
+def test_the_least_singular_value_of_oblique_axes(rng):
+    """Where no two axes are at right angles it is at either end of the fork's travel."""
+    rows = (
+        DHRow(variable="arm"),
+        DHRow(alpha=0.7, a=1.0, variable="fork"),
+        DHRow(alpha=-1.1, d=0.3, sign=-1, variable="cab"),
+        DHRow(alpha=0.4),
+    )
+    chain = chain_of(replace(DES, rows=rows), Seat())
+    for middle in np.linspace(-3.0, 3.0, 13):
+        angles = np.array([0.0, middle, 0.0]) + rng.uniform(-0.8, 0.8, (400, 3))
+        expected = np.min(np.linalg.svd(ground_jacobian(chain, angles), compute_uv=False))
+        assert least_singular_value(chain, angles) == pytest.approx(expected, abs=1e-14)
 
 
 def test_well_conditioned_inverse_is_exact(case, rng):

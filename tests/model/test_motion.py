@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from des_cli.model.motion import (
+    PIECE,
     DesiredMotion,
     Motion,
     Record,
@@ -92,3 +93,23 @@ def test_a_record_is_the_same_only_where_it_is_the_very_same() -> None:
     assert hash(asked.record) == hash(Record(MOTION, missing))
     assert asked.record != Record(MOTION)
     assert Record(MOTION) != Record(replace(MOTION))
+
+
+def test_pieces_are_the_whole_with_neighbours():
+    """Every sample is the own of one piece, which has two on either side where there are."""
+    count = 2 * PIECE + 1
+    t = np.linspace(0.0, 5.0, count)
+    angle = np.cumsum(np.sin(t)[:, None] * [1.0, 2.0, 3.0], axis=0)
+    rate = np.cos(t)[:, None] * [3.0, 2.0, 1.0]
+    whole = Motion(t, angle, rate[:-1], rate[1:])
+    pieces = list(whole.pieces())
+    assert [piece.first for piece in pieces] == [0, PIECE, 2 * PIECE]
+    found = [piece.motion.angle[piece.own] for piece in pieces]
+    np.testing.assert_array_equal(np.concatenate(found), angle)
+    found = [piece.motion.acceleration[piece.own_intervals] for piece in pieces]
+    np.testing.assert_array_equal(np.concatenate(found), whole.acceleration)
+    for piece in pieces:
+        jerk = piece.motion.jerk
+        begin = piece.first - piece.own.start
+        np.testing.assert_array_equal(jerk, whole.jerk[begin : begin + len(jerk)])
+    assert len(pieces[-1].motion.t) == 3

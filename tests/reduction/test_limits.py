@@ -19,7 +19,9 @@ from des_cli.reduction.limits import (
     find_occupant_violations,
     find_violations,
     jerk_magnitude,
+    largest_angle,
     measure_peaks,
+    steps_too_short,
 )
 
 T = np.linspace(0.0, 4.0, 41)
@@ -376,3 +378,20 @@ def test_a_bound_on_the_angular_acceleration():
     assert "desired seat angular acceleration" in str(found)
     roomy = occupant(angular_acceleration=0.51)
     assert find_occupant_violations(roomy, Seat(), response, motion, "desired") == ()
+
+
+@pytest.mark.parametrize("length", [1, 7, 40])
+def test_a_long_motion_is_measured_in_pieces(length, monkeypatch):
+    """However long they are: a limit is broken, and a peak reached, where it is in the whole."""
+    rate = 4.0 * np.stack([np.sin(9.0 * T), np.cos(5.0 * T), np.sign(np.sin(3.0 * T))], axis=1)
+    whole, again = from_rates(rate), from_rates(rate)
+    expected, peaks = find_violations(DES, whole, "desired"), measure_peaks(whole)
+    assert len({(v.joint, v.quantity) for v in expected}) > 6
+    monkeypatch.setattr("des_cli.model.motion.PIECE", length)
+    assert find_violations(DES, again, "desired") == expected
+    found = measure_peaks(again)
+    for name in ("angle", "rate", "acceleration", "jerk", "rate_step"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(peaks, name))
+    np.testing.assert_array_equal(largest_angle(again), peaks.angle)
+    fast = replace(DES, limits=tuple(replace(each, jerk=1e-12) for each in DES.limits))
+    assert steps_too_short(fast, again, 1e-9) == steps_too_short(fast, whole, 1e-9) != ""
