@@ -60,6 +60,16 @@ def coriolis_pairs_hessian(chain: Chain, angles: Floats, axes: Axes) -> Floats:
     return _forms(chain, axes).gradient.gradient()(angles)
 
 
+def pairs_form(chain: Chain, axes: Axes) -> TrigPolynomial:
+    """Return what ``coriolis_pairs`` is evaluated from, value (3 pair, 3 component)."""
+    return _forms(chain, axes).pairs
+
+
+def angle_gradient_form(chain: Chain, axes: Axes) -> TrigPolynomial:
+    """Return the same of ``coriolis_pairs_gradient``, value (3 angle, 3 pair, 3)."""
+    return _forms(chain, axes).gradient
+
+
 def coriolis(chain: Chain, angles: Floats, rates: Floats, axes: Axes) -> Floats:
     """Return the Coriolis vector c of (21)-(24).
 

@@ -12,7 +12,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from des_cli.kinematics.chain import Chain, chain_of, joint_axes
-from des_cli.kinematics.coriolis import angular_acceleration_split, coriolis
+from des_cli.kinematics.coriolis import angular_acceleration_split
+from des_cli.kinematics.coriolis_along import coriolis_along
 from des_cli.kinematics.seat import (
     PILOT_SIGNS,
     in_seat_axes,
@@ -56,7 +57,7 @@ def respond(machine: Machine, seat: Seat, motion: Motion) -> Response:
         felt.seat_rate,
         felt.seat_angular_acceleration,
         felt.seat_g,
-        coriolis_report=coriolis(chain, motion.angle_sides, motion.rate_sides, "report"),
+        coriolis_report=coriolis_along(chain, motion, "report"),
     )
 
 
@@ -80,18 +81,21 @@ _made: WeakKeyDictionary[Motion, dict[tuple[Chain, float], SeatResponse]] = Weak
 
 def _by_screws(forms: SeatForms, motion: Motion) -> SeatResponse:
     """Evaluate the seat's twist, for an arm that turns about the vertical."""
-    intervals, acceleration = len(motion.step), motion.acceleration
+    intervals = len(motion.step)
     felt = [np.empty((intervals, 2, 3)) for _ in range(4)]
     cross, spin, turning, g = felt
     to_g = PILOT_SIGNS[:, None] / STANDARD_GRAVITY_M_S2
     for first in range(0, intervals, BLOCK):
-        part = slice(first, first + BLOCK)
-        z = np.empty((8, len(acceleration[part])))
-        z[5:] = acceleration[part].T
-        sides = (motion.angle[:-1], motion.rate_start), (motion.angle[1:], motion.rate_end)
-        for side, (angle, rate) in enumerate(sides):
-            z[:2], z[2:5] = angle[part, 1:].T, rate[part].T
-            seat = forms.at(z)
+        part = slice(first, min(first + BLOCK, intervals))
+        start, end = motion.rate_start[part], motion.rate_end[part]
+        acceleration = ((end - start) / motion.step[part, None]).T
+        z = np.zeros((8, len(start) + 1))
+        z[:2] = motion.angle[first : part.stop + 1, 1:].T
+        samples = forms.at(z)
+        for side, rate in enumerate((start, end)):
+            # Both sides of a sample have the same angles.
+            at = slice(side, side + len(start))
+            seat = samples.moving(at, np.ascontiguousarray(rate.T), acceleration)
             cross[part, side] = seat.products[:3].T
             spin[part, side] = seat.twist[:3].T
             turning[part, side] = seat.twist_rate[:3].T

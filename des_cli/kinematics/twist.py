@@ -67,6 +67,17 @@ class SeatMotion:
     rate: Floats
     acceleration: Floats
 
+    def moving(self, points: slice, rate: Floats, acceleration: Floats) -> SeatMotion:
+        """Return the motion at some of the points, with other rates and accelerations.
+
+        What depends on the angles alone is evaluated here, once for all that are asked for.
+        """
+        other = SeatMotion(self.forms, self.functions[:, points], rate, acceleration)
+        for name in ("arm", "fork", "gravity"):
+            # Where a cached property keeps its value.
+            other.__dict__[name] = getattr(self, name)[..., points]
+        return other
+
     @cached_property
     def arm(self) -> Floats:
         """S1 and its first derivatives by theta2 and theta3, (3, 6, m)."""

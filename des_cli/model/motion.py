@@ -84,9 +84,21 @@ class Motion:
         return np.diff(self.t)
 
     @cached_property
+    def weight(self) -> Floats:
+        """Weights of the trapezoidal rule for values at samples, (n,) [s]."""
+        weight = np.zeros_like(self.t)
+        weight[:-1] = 0.5 * self.step
+        weight[1:] += 0.5 * self.step
+        return weight
+
+    @cached_property
     def rate(self) -> Floats:
         """Rate at each sample, (n, 3) [rad/s]; the mean of both sides at a step."""
-        return mean_of_sides(np.stack([self.rate_start, self.rate_end], axis=1))
+        samples = np.empty_like(self.angle)
+        samples[0], samples[-1] = self.rate_start[0], self.rate_end[-1]
+        np.add(self.rate_end[:-1], self.rate_start[1:], out=samples[1:-1])
+        samples[1:-1] *= 0.5
+        return samples
 
     @cached_property
     def acceleration(self) -> Floats:

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from des_cli.kinematics.chain import Chain
-from des_cli.kinematics.coriolis import coriolis
-from des_cli.model.arrays import inner
-from des_cli.model.motion import Motion, integrate_sides
+from des_cli.kinematics.coriolis_along import coriolis_blocks
+from des_cli.model.arrays import Floats
+from des_cli.model.motion import PIECE, Motion
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.study_law import RUNAWAY
 from des_cli.study.backward_forward import adjoint_along, factors_of, follow
@@ -66,14 +66,14 @@ def compare(problem: Problem, modified: Motion, chain: Chain | None = None) -> B
     swept_energy = np.inf if swept is None else weighted_energy(problem, swept)
     if swept_energy > RAN_AWAY * before:
         swept = None
-    p = _constant_factor(problem, before, after) if before > after else 1.0
-    constant = follow(desired, np.full((len(desired.t), 1), p))
+    slowed = _Slowed(problem)
+    p = _constant_factor(slowed, before, after) if before > after else 1.0
     return Baselines(
         reduction=relative_reduction(before, after),
         sweep_reduction=None if swept is None else relative_reduction(before, swept_energy),
         sweep_deviation=None if swept is None else joint_deviation(desired, swept),
         constant_p=p,
-        constant_deviation=joint_deviation(desired, constant),
+        constant_deviation=_deviation(desired, slowed.angle(p)),
     )
 
 
@@ -99,30 +99,64 @@ def _sweep_once(problem: Problem) -> Motion | None:
 
 def weighted_energy(problem: Problem, motion: Motion) -> float:
     """Return int c' R1 c dt of a motion."""
-    c = coriolis(problem.chain, motion.angle_sides, motion.rate_sides, problem.axes)
-    return float(integrate_sides(motion.step, inner(c @ problem.r1, c)))
+    energy = 0.0
+    for part, sides in coriolis_blocks(problem.chain, motion, problem.axes):
+        square = sum(np.sum((problem.r1 @ c) * c, axis=0) for c in sides)
+        energy += 0.5 * float(motion.step[part] @ square)
+    return energy
 
 
 def joint_deviation(reference: Motion, motion: Motion) -> float:
     """Return ||theta - Theta|| / ||Theta|| over the joint angles."""
-    whole = reference.angle_sides
-    off = motion.angle_sides - whole
-    lost, size = (float(integrate_sides(reference.step, inner(v, v))) for v in (off, whole))
+    return _deviation(reference, motion.angle)
+
+
+def _deviation(reference: Motion, angle: Floats) -> float:
+    """Return the same of angles (n, 3)."""
+    off = angle - reference.angle
+    lost, size = (
+        float(np.einsum("n,nj,nj->", reference.weight, each, each))
+        for each in (off, reference.angle)
+    )
     return float(np.sqrt(lost / max(size, 1e-300)))
 
 
-def _constant_factor(problem: Problem, before: float, after: float) -> float:
+class _Slowed:
+    """The motions of one constant factor on the desired rates."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem, desired = problem, problem.desired
+        # The arm is commanded by its rate: its angle is what that integrates to.
+        rise = 0.5 * desired.step * (desired.rate_start[:, 0] + desired.rate_end[:, 0])
+        self.rise = desired.angle - desired.angle[0]
+        self.rise[1:, 0] = np.cumsum(rise)
+
+    def angle(self, p: float, samples: slice = slice(None)) -> Floats:
+        """Return the angles of a factor at samples, (n, 3) [rad]."""
+        return np.asarray(self.problem.desired.angle[0] + p * self.rise[samples])
+
+    def energy(self, p: float) -> float:
+        """Return the weighted energy of a factor."""
+        desired, energy = self.problem.desired, 0.0
+        for first in range(0, len(desired.step), PIECE):
+            part = slice(first, min(first + PIECE, len(desired.step)))
+            samples = slice(first, part.stop + 1)
+            rates = (p * desired.rate_start[part], p * desired.rate_end[part])
+            motion = Motion(desired.t[samples], self.angle(p, samples), *rates)
+            energy += weighted_energy(self.problem, motion)
+        return energy
+
+
+def _constant_factor(slowed: _Slowed, before: float, after: float) -> float:
     """Return a constant p below one whose weighted energy is that of a solution.
 
     The energy is p^4 times what changes slowly with p: its fourth root is close to a
     line, on which a secant that keeps a bracket (Anderson and Bjoerck, BIT 13, 1973)
     arrives after a few evaluations.
     """
-    ones = np.ones((len(problem.desired.t), 1))
 
     def excess(p: float) -> float:
-        followed = follow(problem.desired, p * ones)
-        return float(weighted_energy(problem, followed) ** 0.25 - after**0.25)
+        return float(slowed.energy(p) ** 0.25 - after**0.25)
 
     low, high = 0.0, 1.0
     at_low, at_high = float(-(after**0.25)), float(before**0.25 - after**0.25)

@@ -15,9 +15,9 @@ from __future__ import annotations
 import numpy as np
 
 from des_cli.kinematics.chain import Chain
-from des_cli.kinematics.coriolis import coriolis_derivatives
+from des_cli.kinematics.coriolis_along import coriolis_slope
 from des_cli.model.arrays import Floats
-from des_cli.model.motion import Motion, mean_of_sides
+from des_cli.model.motion import Motion
 from des_cli.model.profile import Axes
 
 
@@ -38,9 +38,7 @@ def adjoint_along(motion: Motion, chain: Chain, axes: Axes, r1: Floats) -> Float
     (n, 3) array
         The costate L of the joint angles at each sample; zero at the last.
     """
-    c, dc_dangle, _ = coriolis_derivatives(chain, motion.angle_sides, motion.rate_sides, axes)
-    slope = ((c @ r1)[:, :, None, :] @ dc_dangle)[:, :, 0]
-    fall = 0.5 * motion.step[:, None] * slope.sum(axis=1)
+    fall = 0.5 * motion.step[:, None] * coriolis_slope(chain, motion, axes, r1)
     return np.vstack([np.cumsum(fall[::-1], axis=0)[::-1], np.zeros(3)])
 
 
@@ -58,8 +56,7 @@ def factors_of(desired: Motion, adjoint: Floats, r2: Floats) -> Floats:
     -------
     (n, m) array
     """
-    sides = np.stack([adjoint[:-1], adjoint[1:]], axis=1)
-    power = mean_of_sides(sides * desired.rate_sides)
+    power = adjoint * desired.rate
     if len(r2) == 1:
         power = power.sum(axis=1, keepdims=True)
     return np.asarray(1.0 - power / r2)
