@@ -28,7 +28,7 @@ from des_cli.model.metric import (
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.verify.claim import Claim
-from des_cli.verify.felt import Felt
+from des_cli.verify.felt import Attitudes, Felt
 
 BUDGET_TOLERANCE = 1e-9
 """Relative excess over a budget that rounding alone may make."""
@@ -178,12 +178,20 @@ def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
         If the metric is none.
     """
     if metric == ATTITUDE_ERROR:
-        chord = np.sqrt(np.sum((felt.rotation - claim.before.rotation) ** 2, axis=(0, 1)) / 8.0)
-        return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(chord, 1.0))))
+        return _apart(felt.attitudes, claim.before.attitudes)
     if metric != ANGULAR_ACCELERATION_PEAK_RATIO:
         raise ValueError(f"{metric} is no largest value over time")
     before, after = (np.sqrt(np.sum(each.turning**2, axis=0)) for each in (claim.before, felt))
     return np.asarray(after / max(float(np.max(before)), UNFELT_ANGULAR_ACCELERATION))
+
+
+def _apart(one: Attitudes, other: Attitudes) -> Floats:
+    """Return the angles between attitudes at m states, (m,) [deg], by their chord."""
+    square = np.empty(len(one.angle))
+    for (samples, mine), (_, its) in zip(one.blocks(), other.blocks(), strict=True):
+        square[samples] = np.sum((mine - its) ** 2, axis=(0, 1))
+    chord = np.minimum(np.sqrt(square / 8.0), 1.0)
+    return one.at_states(np.degrees(2.0 * np.arcsin(chord)))
 
 
 def mean_square_one_minus_p(claim: Claim, control: Floats) -> float:

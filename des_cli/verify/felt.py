@@ -1,24 +1,23 @@
 """What the seat does along a motion, evaluated by a way of its own.
 
 Of the rest of the program this shares the machine's Denavit-Hartenberg rows, as data, and
-nothing else: no chain, no Jacobian, no joint axes. The pose of the seat in the ground
-frame is a product of 4 x 4 transforms, and its derivatives in time are carried through
-that product exactly. With ``Q = d Rot_z / d angle  Rot_z^-1`` every joint turns its part X
-of the chain by::
+nothing else: no chain, no Jacobian, no joint axes. From the ground to the seat, frame by
+frame, four vectors are carried along the axes of each frame: its angular velocity W, how
+that changes at constant joint rates (the cross-coupling), how it changes in all, and the
+acceleration of its origin, which gravity's reaction g z0 is added to at the ground. A
+constant transform of rotation R and shift p leaves the first three, but for the axes::
 
-    Y   = Rot_z X
-    Y'  = Rot_z X' + theta' Q Y
-    Y'' = Rot_z X'' + 2 theta' Q (Rot_z X') + theta'^2 Q^2 Y + theta'' Q Y
+    a'' = R^T (a + dW/dt x p + W x (W x p))
 
-The last term, linear in the accelerations, is carried apart: without it R'' is that of
-constant joint rates, whose turning is the cross-coupling. From R and p, in seat axes::
-
-    [W x] = R' R' of the joints,  dW/dt = antisymmetric part of R^T R'',  f = R^T (p'' + g z0)
+and a joint that turns about its z by an angle theta adds its own rate and acceleration,
+and what the rate of all before it makes of its axis, W x z theta'. At the seat the last is
+the specific force.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -29,16 +28,67 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import JOINTS, DHRow, Machine, Seat
 from des_cli.model.motion import Motion
 from des_cli.units import STANDARD_GRAVITY_M_S2
+from des_cli.verify.rotations import exponential
 
 CHUNK = 2048
 """States evaluated at a time, so that temporaries stay in a core's cache."""
 
-VALUE, FIRST, SECOND, EULER = range(4)
-"""What is carried through the chain: a value, its first derivative in time, its second at
-constant joint rates, and what the joints' accelerations add to the second."""
+RATE, CROSS, TURNING, FORCE = range(4)
+"""The vectors that are carried through the chain."""
+
+Turn = tuple[Floats, Floats]
+"""Cosine and sine of what a joint turns its frame by, (m,) each."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class Attitudes:
+    """Attitudes of the seat in the ground, evaluated when they are asked for.
+
+    Parameters
+    ----------
+    chain : SeatChain
+    angle : (k, 3) array
+        Of the joints [rad].
+    sided : bool
+        Whether these are the samples of a motion, of which the states are the starts of
+        all intervals and then their ends; else they are the states' own.
+    turn : (k, 3) array, optional
+        Rotation vectors along seat axes by which the seat is turned further [rad].
+    """
+
+    chain: SeatChain
+    angle: Floats
+    sided: bool = False
+    turn: Floats | None = None
+
+    def matrices(self, samples: slice = slice(None)) -> Floats:
+        """Return the rotations from seat to ground axes, (3, 3, k)."""
+        made = self.chain.rotation(self.angle[samples])
+        if self.turn is None:
+            return made
+        return np.asarray(np.einsum("ijm,jkm->ikm", made, exponential(self.turn[samples])))
+
+    def blocks(self) -> Iterator[tuple[slice, Floats]]:
+        """Yield samples and their rotations, block by block."""
+        for first in range(0, len(self.angle), CHUNK):
+            samples = slice(first, min(first + CHUNK, len(self.angle)))
+            yield samples, self.matrices(samples)
+
+    def part(self, states: NDArray[np.intp]) -> Attitudes:
+        """Return those of some states."""
+        count = len(self.angle) - 1
+        at = np.where(states < count, states, states - count + 1) if self.sided else states
+        turn = None if self.turn is None else self.turn[at]
+        return Attitudes(self.chain, self.angle[at], turn=turn)
+
+    def at_states(self, values: Floats) -> Floats:
+        """Return values at the samples, (..., k), at the states, (..., m)."""
+        if not self.sided:
+            return values
+        return np.concatenate([values[..., :-1], values[..., 1:]], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
 class Felt:
     """What the seat does at m states, along its axes x, y, z.
 
@@ -52,33 +102,64 @@ class Felt:
         Its whole change dW/dt [rad/s^2].
     g : (3, m) array
         G-vector in the pilot's signs [g].
-    rotation : (3, 3, m) array
-        From seat to ground axes.
     angle : (3, m) array
         Of the joints [rad].
+    attitudes : Attitudes
     """
 
     rate: Floats
     cross: Floats
     turning: Floats
     g: Floats
-    rotation: Floats
     angle: Floats
+    attitudes: Attitudes
 
     def part(self, states: NDArray[np.intp]) -> Felt:
         """Return some of the states."""
-        fields = (self.rate, self.cross, self.turning, self.g, self.rotation, self.angle)
-        return Felt(*(values[..., states] for values in fields))
+        return Felt(
+            rate=self.rate[:, states],
+            cross=self.cross[:, states],
+            turning=self.turning[:, states],
+            g=self.g[:, states],
+            angle=self.angle[:, states],
+            attitudes=self.attitudes.part(states),
+        )
+
+    @property
+    def rotation(self) -> Floats:
+        """From seat to ground axes, (3, 3, m)."""
+        return self.attitudes.at_states(self.attitudes.matrices())
 
     @cached_property
     def cross_ground(self) -> Floats:
         """The cross-coupling along ground axes, (3, m) [rad/s^2]."""
-        return np.asarray(np.einsum("ijm,jm->im", self.rotation, self.cross))
+        return self._in_ground(self.cross)
 
     @cached_property
     def rate_ground(self) -> Floats:
         """The angular velocity along ground axes, (3, m) [rad/s]."""
-        return np.asarray(np.einsum("ijm,jm->im", self.rotation, self.rate))
+        return self._in_ground(self.rate)
+
+    def _in_ground(self, vectors: Floats) -> Floats:
+        found, attitudes = np.empty_like(vectors), self.attitudes
+        last = len(attitudes.angle) - 1
+        for samples, rotation in attitudes.blocks():
+            first, end = samples.start, samples.stop
+            if not attitudes.sided:
+                _turn_into(found, vectors, rotation, samples)
+                continue
+            starts, before = slice(first, min(end, last)), max(first, 1)
+            _turn_into(found, vectors, rotation[..., : starts.stop - first], starts)
+            ends = slice(last + before - 1, last + end - 1)
+            _turn_into(found, vectors, rotation[..., before - first :], ends)
+        return found
+
+
+def _turn_into(found: Floats, vectors: Floats, rotation: Floats, states: slice) -> None:
+    """Write vectors, turned by rotations (3, 3, k), at k states."""
+    x, y, z = (each[states] for each in vectors)
+    for row, out in zip(rotation, found, strict=True):
+        out[states] = row[0] * x + row[1] * y + row[2] * z
 
 
 @dataclass(frozen=True)
@@ -98,14 +179,12 @@ class SeatChain:
         """
         m = len(angle)
         vectors = np.empty((4, 3, m))
-        rotation = np.empty((3, 3, m))
         for first in range(0, m, CHUNK):
-            part = slice(first, first + CHUNK)
-            pose = self._pose(angle[part].T, rate[part].T, acceleration[part].T)
-            rotation[..., part] = pose[:, VALUE, :3]
-            self._take(pose, vectors[..., part])
+            part = slice(first, min(first + CHUNK, m))
+            turns = self._turns(angle[part])
+            self._carry(turns, rate[part].T, acceleration[part].T, vectors[..., part])
         rates, cross, turning, g = vectors
-        return Felt(rates, cross, turning, g, rotation, angle.T)
+        return Felt(rates, cross, turning, g, angle.T, Attitudes(self, angle))
 
     def along(self, motion: Motion) -> Felt:
         """Evaluate a motion at the start of every interval, then at the end of every one.
@@ -115,69 +194,115 @@ class SeatChain:
         Felt
             Of m = 2 (n - 1) states.
         """
-        return self.at(
-            np.concatenate([motion.angle[:-1], motion.angle[1:]]),
-            np.concatenate([motion.rate_start, motion.rate_end]),
-            np.concatenate([motion.acceleration] * 2),
-        )
+        count = len(motion.t) - 1
+        vectors = np.empty((4, 3, 2 * count))
+        for first in range(0, count, CHUNK):
+            last = min(first + CHUNK, count)
+            start, end = motion.rate_start[first:last].T, motion.rate_end[first:last].T
+            acceleration = (end - start) / (motion.t[first + 1 : last + 1] - motion.t[first:last])
+            turns = self._turns(motion.angle[first : last + 1])
+            for rate, shift in ((start, 0), (end, 1)):
+                sides = [
+                    (c[shift : shift + last - first], s[shift:][: last - first]) for c, s in turns
+                ]
+                out = vectors[..., shift * count + first : shift * count + last]
+                self._carry(sides, rate, acceleration, out)
+        attitudes = Attitudes(self, motion.angle, sided=True)
+        rates, cross, turning, g = vectors
+        angle = attitudes.at_states(motion.angle.T)
+        return Felt(rates, cross, turning, g, angle, attitudes)
 
-    def _pose(self, angle: Floats, rate: Floats, acceleration: Floats) -> Floats:
-        """Return R and p with their derivatives, (3 row, 4 carried, 4 column, m)."""
+    def axes(self, angle: Floats) -> Floats:
+        """Return W along seat axes per unit rate of each joint, (m, 3, 3 joint)."""
+        found = np.empty((len(angle), 3, len(JOINTS)))
+        still = np.zeros((len(JOINTS), min(CHUNK, len(angle))))
+        vectors = np.empty((4, 3, still.shape[1]))
+        for first in range(0, len(angle), CHUNK):
+            turns = self._turns(angle[first : first + CHUNK])
+            m = len(turns[0][0])
+            for joint, unit in enumerate(np.eye(len(JOINTS))):
+                rate = np.broadcast_to(unit[:, None], (len(JOINTS), m))
+                self._carry(turns, rate, still[:, :m], vectors[..., :m])
+                found[first : first + m, :, joint] = vectors[RATE, :, :m].T
+        return found
+
+    def rotation(self, angle: Floats) -> Floats:
+        """Return the rotations from seat to ground axes at angles (m, 3), (3, 3, m)."""
+        constants, _ = _constants(self.machine.rows, self.seat)
+        rotation = np.empty((3, 3, len(angle)))
+        for first in range(0, len(angle), CHUNK):
+            turns = self._turns(angle[first : first + CHUNK])
+            columns = np.repeat(constants[-1][:3, :3, None], len(turns[0][0]), axis=2)
+            for (cosine, sine), constant in zip(reversed(turns), constants[-2::-1], strict=True):
+                x, y = columns[0], columns[1]
+                turned = np.stack([cosine * x - sine * y, sine * x + cosine * y, columns[2]])
+                columns = (constant[:3, :3] @ turned.reshape(3, -1)).reshape(turned.shape)
+            rotation[..., first : first + columns.shape[2]] = columns
+        return rotation
+
+    def _turns(self, angle: Floats) -> list[Turn]:
+        """Return what each joint turns its frame by."""
+        _, signs = _constants(self.machine.rows, self.seat)
+        return [
+            (np.cos(theta), sign * np.sin(theta))
+            for theta, sign in zip(angle.T, signs, strict=True)
+        ]
+
+    def _carry(
+        self, turns: Sequence[Turn], rate: Floats, acceleration: Floats, out: Floats
+    ) -> None:
+        """Write rate, cross-coupling, dW/dt and G at states, (4, 3, m).
+
+        Parameters
+        ----------
+        turns : sequence of Turn
+        rate, acceleration : (3, m) array
+            Of the joints [rad/s], [rad/s^2].
+        out : (4, 3, m) array
+        """
         constants, signs = _constants(self.machine.rows, self.seat)
-        pose = np.zeros((3, 4, 4, angle.shape[1]))
-        pose[:, VALUE] = constants[-1][:3, :, None]
-        for joint in reversed(range(len(JOINTS))):
-            sign = signs[joint]
-            pose = _turned(
-                pose, sign * angle[joint], sign * rate[joint], sign * acceleration[joint]
-            )
-            pose = _placed(constants[joint], pose)
-        return pose
-
-    def _take(self, pose: Floats, out: Floats) -> None:
-        """Write rate, cross-coupling, dW/dt and G of a pose, (4, 3, m)."""
-        r, first, second, euler = (pose[:, k, :3] for k in range(4))
-        cross, turned = out[1], out[2]
-        for x, (y, z) in enumerate(((1, 2), (2, 0), (0, 1))):
-            out[0, x] = _dot(r[:, z], first[:, y])
-            cross[x] = 0.5 * (_dot(r[:, z], second[:, y]) - _dot(r[:, y], second[:, z]))
-            turned[x] = _dot(r[:, z], euler[:, y])
-        turned += cross
-        lifted = pose[:, SECOND, 3] + pose[:, EULER, 3]
-        lifted[2] += self.machine.gravity
-        out[3] = np.einsum("ijm,im->jm", r, lifted) / STANDARD_GRAVITY_M_S2
-        out[3, 2] *= -1.0  # +Gz is eyeballs down, and z is down: the seat pushes up
+        carried = np.zeros((3, 4, out.shape[2]))
+        carried[2, FORCE] = self.machine.gravity
+        for joint, (turn, sign) in enumerate(zip(turns, signs, strict=True)):
+            carried = _placed(constants[joint], carried)
+            carried = _turned(carried, turn, sign * rate[joint], sign * acceleration[joint])
+        carried = _placed(constants[-1], carried)
+        out[:] = carried.swapaxes(0, 1)
+        out[FORCE] /= STANDARD_GRAVITY_M_S2
+        out[FORCE, 2] *= -1.0  # +Gz is eyeballs down, and z is down: the seat pushes up
 
 
-def _turned(pose: Floats, angle: Floats, rate: Floats, acceleration: Floats) -> Floats:
-    """Return a pose turned about z by a joint that moves."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    out = np.empty_like(pose)
-    out[0] = cosine * pose[0] - sine * pose[1]
-    out[1] = sine * pose[0] + cosine * pose[1]
-    out[2] = pose[2]
-    # Q maps rows (0, 1) to (-1, 0); the second derivative comes first, it needs the turned
-    # first one without this joint's own share.
-    value, first, second, euler = (out[:2, k] for k in range(4))
-    square, twice = rate * rate, 2.0 * rate
-    second[0] -= twice * first[1] + square * value[0]
-    second[1] += twice * first[0] - square * value[1]
-    first[0] -= rate * value[1]
-    first[1] += rate * value[0]
-    euler[0] -= acceleration * value[1]
-    euler[1] += acceleration * value[0]
+def _turned(carried: Floats, turn: Turn, rate: Floats, acceleration: Floats) -> Floats:
+    """Return vectors (3, 4, m) along the axes of a frame that a joint turns about their z."""
+    cosine, sine = turn
+    out = np.empty_like(carried)
+    out[0] = cosine * carried[0] + sine * carried[1]
+    out[1] = cosine * carried[1] - sine * carried[0]
+    out[2] = carried[2]
+    swept_x, swept_y = rate * out[1, RATE], rate * out[0, RATE]  # W x z theta', but for a sign
+    for vector in (CROSS, TURNING):
+        out[0, vector] += swept_x
+        out[1, vector] -= swept_y
+    out[2, RATE] += rate
+    out[2, TURNING] += acceleration
     return out
 
 
-def _placed(constant: Floats, pose: Floats) -> Floats:
-    """Return a pose after a constant transform."""
-    out = (constant[:3, :3] @ pose.reshape(3, -1)).reshape(pose.shape)
-    out[:, VALUE, 3] += constant[:3, 3, None]
-    return out
+def _placed(constant: Floats, carried: Floats) -> Floats:
+    """Return vectors (3, 4, m) of a frame that a constant transform places in theirs."""
+    shift = constant[:3, 3]
+    if np.any(shift):
+        rate, turning, force = carried[:, RATE], carried[:, TURNING], carried[:, FORCE]
+        force += _cross_with(shift) @ turning
+        force += rate * (shift @ rate) - shift[:, None] * np.sum(rate * rate, axis=0)
+    along = constant[:3, :3].T @ carried.reshape(3, -1)
+    return np.asarray(along.reshape(carried.shape))
 
 
-def _dot(one: Floats, other: Floats) -> Floats:
-    return np.asarray(one[0] * other[0] + one[1] * other[1] + one[2] * other[2])
+def _cross_with(vector: Floats) -> Floats:
+    """Return the matrix that makes a cross product with a vector on the right, (3, 3)."""
+    x, y, z = vector
+    return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
 
 
 @lru_cache(maxsize=64)

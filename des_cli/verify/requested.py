@@ -11,6 +11,7 @@ from des_cli.model.arrays import Floats
 from des_cli.model.motion import Shortfall
 from des_cli.model.profile import BodyRates, Command, GCommand
 from des_cli.verify.felt import Felt
+from des_cli.verify.rotations import exponential
 
 
 def as_requested(felt: Felt, command: Command | None, missing: Shortfall | None) -> Felt:
@@ -35,14 +36,8 @@ def as_requested(felt: Felt, command: Command | None, missing: Shortfall | None)
         rate = np.concatenate([command.start, command.end]).T
     if isinstance(command, GCommand):
         g = np.concatenate([command.start, command.end]).T
-    turn = np.concatenate([missing.attitude[:-1], missing.attitude[1:]])
-    return replace(
-        felt,
-        rate=rate,
-        turning=turning,
-        g=g,
-        rotation=np.einsum("ijm,jkm->ikm", felt.rotation, exponential(turn)),
-    )
+    attitudes = replace(felt.attitudes, turn=missing.attitude)
+    return replace(felt, rate=rate, turning=turning, g=g, attitudes=attitudes)
 
 
 def _states(sides: Floats) -> Floats:
@@ -61,21 +56,3 @@ def turned(step: Floats, rates: BodyRates) -> Floats:
     turns = exponential(h * mean + h**2 / 12.0 * np.cross(rates.start, rates.end))
     product = accumulate(np.moveaxis(turns, 2, 0), np.matmul, initial=np.eye(3))
     return np.stack(list(product), axis=-1)
-
-
-def exponential(vector: Floats) -> Floats:
-    """Return the rotations of rotation vectors (m, 3), (3, 3, m), by quaternions."""
-    half = 0.5 * np.linalg.norm(vector, axis=1)
-    return matrices(np.column_stack([np.cos(half), 0.5 * np.sinc(half / np.pi)[:, None] * vector]))
-
-
-def matrices(quaternion: Floats) -> Floats:
-    """Return the rotations of unit quaternions w, x, y, z (m, 4), (3, 3, m)."""
-    w, x, y, z = quaternion.T
-    return np.array(
-        [
-            [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
-        ]
-    )

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from typing import TypeAlias, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from des_cli.model.arrays import Flags, Floats
 from des_cli.model.coriolis import COMPONENTS, Component
@@ -28,10 +29,10 @@ from des_cli.model.run import Check
 from des_cli.verify import felt as seat
 from des_cli.verify.budgets import measure
 from des_cli.verify.claim import Claim
-from des_cli.verify.factors import jacobian
 from des_cli.verify.limits import STEP_TOLERANCE, magnitudes
 from des_cli.verify.occupant import largest_onsets
-from des_cli.verify.requested import matrices, turned
+from des_cli.verify.requested import turned
+from des_cli.verify.rotations import matrices
 
 TOLD_TOLERANCE = 1e-8
 """Relative gap between a number and its twin: sums in another order, and cancellations of
@@ -53,6 +54,9 @@ UNCOUPLED = 1e-6
 ATTITUDE_TOLERANCE = 1e-6
 """The same of ``singularity``: an attitude is a product of as many turns as there are rows."""
 
+
+SAME_COSINE = 1e-14
+"""Difference of cosines between axes that may be rounding."""
 
 REGULAR = 0.1
 """Singular value from which the inverse is not damped: a part of what body rates mean."""
@@ -268,35 +272,60 @@ def singularity_numbers(claim: Claim, told: Singularity) -> Numbers:
     """
     angle, command = claim.requested.angle, claim.profile.command
     yield "min_abs_cos_fork", told.min_abs_cos_fork, float(np.min(np.abs(np.cos(angle[:, 1]))))
-    columns = jacobian(claim.chain_before, angle)
-    least = np.asarray(np.linalg.svd(columns, compute_uv=False)[:, -1], dtype=float)
+    nearest = _nearest_to_singular(claim)
+    least = _least_singular(claim.chain_before.axes(angle[nearest]))
     yield "min_singular_value", told.min_singular_value, float(np.min(least))
     if isinstance(command, BodyRates):
-        yield from _of_rates(claim, command, told, columns, least)
+        yield from _of_rates(claim, command, told)
     else:
         yield "damped_samples", told.damped_samples, 0.0
         yield "max_residual_rad_s", told.max_residual_rad_s, 0.0
         yield "integration_error_max_deg", told.integration_error_max_deg, 0.0
 
 
-def _of_rates(
-    claim: Claim, command: BodyRates, told: Singularity, columns: Floats, least: Floats
-) -> Numbers:
+def _nearest_to_singular(claim: Claim) -> NDArray[np.intp]:
+    """Return samples of the motion asked for, among them the nearest to the singularity.
+
+    Neighbouring axes keep the angle between them, so that the axes' matrix of cosines changes
+    in one of them alone, that of arm and cab. The square of the smallest singular value is an
+    eigenvalue of it, the least of what is linear in that cosine: it is least where the cosine
+    is least or largest. Those of one fork angle are one sample.
+    """
+    chain, angle = claim.chain_before, claim.requested.angle
+    # The arm does not turn its own axis in the ground, nor the cab its own in the seat.
+    cab = chain.axes(angle[:1])[0, :, 2]
+    arm = chain.rotation(angle[:1])[..., 0] @ chain.axes(angle[:1])[0, :, 0]
+    cosine = np.empty(len(angle))
+    for samples, rotation in claim.made.attitudes.blocks():
+        cosine[samples] = np.tensordot(arm, np.tensordot(rotation, cab, (1, 0)), 1)
+    least, most = np.min(cosine) + SAME_COSINE, np.max(cosine) - SAME_COSINE
+    found = np.flatnonzero((cosine <= least) | (cosine >= most))
+    _, first = np.unique(angle[found, 1], return_index=True)
+    return np.asarray(found[first])
+
+
+def _least_singular(columns: Floats) -> Floats:
+    """Return the smallest singular values of matrices (m, 3, 3), (m,)."""
+    return np.asarray(np.linalg.svd(columns, compute_uv=False)[:, -1], dtype=float)
+
+
+def _of_rates(claim: Claim, command: BodyRates, told: Singularity) -> Numbers:
     made = claim.made
+    columns = claim.chain_before.axes(claim.requested.angle)
+    least = _least_singular(columns)
     asked = np.concatenate([command.start, command.end]).T
     missed = asked - made.rate
     start, end = np.split(missed, 2, axis=1)
     inside = 0.5 * (start[:, 1:] + end[:, :-1])
     residual = max(_peak(_length(each)) for each in (start[:, :1], inside, end[:, -1:]))
     yield "max_residual_rad_s", told.max_residual_rad_s, residual
-    demand = np.einsum("ijm,jm->mi", made.rotation, asked)
     few, many = (
-        float(np.sum(_held(claim, columns, least, demand, slack)))
+        float(np.sum(_held(claim, columns, least, asked.T, slack)))
         for slack in (-DOUBTFUL, DOUBTFUL)
     )
     count = told.damped_samples
     yield "damped_samples", count, float(np.clip(count or 0.0, few, many))
-    flown = np.concatenate([made.rotation[..., : len(least) - 1], made.rotation[..., -1:]], axis=-1)
+    flown = made.attitudes.matrices()
     turns = turned(claim.requested.step, command)
     apart = _largest_angle(flown, np.tensordot(flown[..., 0], turns, 1))
     yield "integration_error_max_deg", told.integration_error_max_deg, apart
@@ -315,11 +344,11 @@ def _held(claim: Claim, columns: Floats, least: Floats, demand: Floats, slack: f
     ----------
     claim : Claim
     columns : (n, 3, 3) array
-        Along ground axes, W per unit rate of each joint.
+        Along seat axes, W per unit rate of each joint.
     least : (n,) array
         Its smallest singular value.
     demand : (2 (n - 1), 3) array
-        W along ground axes [rad/s], at the starts of all intervals and then at their ends.
+        W along seat axes [rad/s], at the starts of all intervals and then at their ends.
     slack : float
         Share by which what is regular and slow enough is taken to be less.
     """

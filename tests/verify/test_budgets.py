@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from des_cli.kinematics.chain import chain_of
 from des_cli.model.machines import DES
@@ -50,14 +49,12 @@ def off(field: str, vector: list[float]) -> Felt:
     return replace(CLAIM.before, **{field: getattr(CLAIM.before, field) + np.c_[vector]})
 
 
-def turned(degrees: float, state: int | None = None) -> Felt:
+def turned(degrees: float, sample: int | None = None) -> Felt:
     """What is asked for, with the attitude turned about some axis."""
     vector = np.radians(degrees) * np.array([2.0, -3.0, 6.0]) / 7.0
-    rotation = CLAIM.before.rotation.copy()
-    states = slice(None) if state is None else [state]
-    turn = Rotation.from_rotvec(vector).as_matrix()
-    rotation[..., states] = np.einsum("ijm,jk->ikm", rotation[..., states], turn)
-    return replace(CLAIM.before, rotation=rotation)
+    turn = np.zeros((len(WAVE.t), 3))
+    turn[slice(None) if sample is None else sample] = vector
+    return replace(CLAIM.before, attitudes=replace(CLAIM.before.attitudes, turn=turn))
 
 
 def arm_alone(*accelerations: float) -> Claim:
@@ -92,11 +89,10 @@ def test_a_metric_of_a_change_that_is_known(metric: str, felt: Felt, value: floa
 
 
 def test_half_a_turn_about_any_axis_is_half_a_turn() -> None:
-    axes = np.random.default_rng(8).normal(size=(CLAIM.before.g.shape[1], 3))
+    axes = np.random.default_rng(8).normal(size=(len(WAVE.t), 3))
     axes *= np.pi / np.linalg.norm(axes, axis=1)[:, None]
-    turn = Rotation.from_rotvec(axes).as_matrix()
-    rotation = np.einsum("ijm,mjk->ikm", CLAIM.before.rotation, turn)
-    found = at_states(CLAIM, ATTITUDE, replace(CLAIM.before, rotation=rotation))
+    attitudes = replace(CLAIM.before.attitudes, turn=axes)
+    found = at_states(CLAIM, ATTITUDE, replace(CLAIM.before, attitudes=attitudes))
     np.testing.assert_allclose(found, 180.0, atol=1e-5)
 
 

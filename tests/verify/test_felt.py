@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,12 @@ import pytest
 
 import des_cli.verify
 from des_cli.kinematics.response import respond
-from des_cli.model.machine import Seat
+from des_cli.model.machine import DHRow, Seat
 from des_cli.model.machines import DES, JOHNSVILLE
+from des_cli.model.motion import Motion
 from des_cli.verify.felt import CHUNK, SeatChain
 from tests.reduction.conftest import make_uneven
+from tests.support.pose_derivatives import by_product_rule
 from tests.support.seat_forms import by_closed_forms
 
 SEATS = [(90.0, 0.0), (0.0, 0.0), (87.1, -12.0), (-40.0, 65.0)]
@@ -39,6 +42,60 @@ def test_the_closed_forms_of_the_des(degrees):
     ):
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
     np.testing.assert_array_equal(felt.angle.T, states[0])
+
+
+def oblique(draw):
+    """A machine of rows with no angle and no length left out, whose arm does not stand upright."""
+    named = (None, "arm", None, "fork", "cab", "seat_yaw", None, "seat_pitch")
+    rows = tuple(
+        DHRow(*draw.normal(size=4), variable=variable, sign=int(draw.choice([-1, 1])))
+        for variable in named
+    )
+    return replace(DES, rows=rows)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_any_rows_by_the_product_rule_alone(seed):
+    """No frame that turns is named there, and no angular velocity is composed of others."""
+    draw = np.random.default_rng(seed)
+    machine, seat = oblique(draw), Seat(*draw.normal(size=2))
+    angle, rate, acceleration = random_states(7)
+    chain = SeatChain(machine, seat)
+    felt, coasting = chain.at(angle, rate, acceleration), chain.at(angle, rate, 0.0 * rate)
+    axes = chain.axes(angle)
+    for i, state in enumerate(zip(angle, rate, acceleration, strict=True)):
+        expected = by_product_rule(machine, seat, *state)
+        for found, value in (
+            (felt.rate[:, i], expected.rate),
+            (felt.turning[:, i], expected.turning),
+            (felt.g[:, i], expected.g),
+            (felt.rotation[..., i], expected.rotation),
+            (axes[i] @ rate[i], expected.rate),
+        ):
+            np.testing.assert_allclose(found, value, rtol=0, atol=1e-11)
+        still = by_product_rule(machine, seat, angle[i], rate[i], np.zeros(3))
+        for cross in (felt.cross[:, i], coasting.cross[:, i], coasting.turning[:, i]):
+            np.testing.assert_allclose(cross, still.turning, rtol=0, atol=1e-11)
+
+
+def test_attitudes_of_a_motion_are_those_of_its_states():
+    """At starts and at ends, of all and of some, and with a further turn."""
+    motion = make_uneven()
+    felt = SeatChain(JOHNSVILLE, Seat(0.3, -0.2)).along(motion)
+    turn = np.random.default_rng(3).normal(size=motion.angle.shape)
+    turned = replace(felt, attitudes=replace(felt.attitudes, turn=turn))
+    count = len(motion.step)
+    some = np.array([0, 3, count - 1, count, count + 1, 2 * count - 1])
+    for each in (felt, turned):
+        assert each.rotation.shape == (3, 3, 2 * count)
+        np.testing.assert_array_equal(each.rotation[..., 1:count], each.rotation[..., count:-1])
+        np.testing.assert_array_equal(each.part(some).rotation, each.rotation[..., some])
+        ground = np.einsum("ijm,jm->im", each.rotation, each.cross)
+        np.testing.assert_allclose(each.cross_ground, ground, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(
+            each.part(some).cross_ground, ground[:, some], rtol=0, atol=1e-14
+        )
+    assert np.max(np.abs(turned.rotation - felt.rotation)) > 0.1
 
 
 def test_dw_dt_and_cross_coupling_are_differences_of_the_angular_velocity():
@@ -73,6 +130,21 @@ def test_along_a_motion_with_steps_of_the_rate(machine):
     ):
         sides = np.stack(np.split(found.T, 2), axis=1)
         np.testing.assert_allclose(sides, expected, rtol=0, atol=1e-12)
+
+
+def test_a_motion_longer_than_what_is_evaluated_at_once():
+    """Its ground axes too, whose blocks are of samples and not of states."""
+    count = 2 * CHUNK + 2
+    draw = np.random.default_rng(5).normal(size=(3, count, 3))
+    motion = Motion(np.arange(count) * 0.1, draw[0], draw[1, 1:], draw[2, 1:])
+    felt, other = SeatChain(DES, Seat()).along(motion), respond(DES, Seat(), motion)
+    for found, expected in (
+        (felt.turning, other.seat_angular_acceleration),
+        (felt.cross_ground, other.coriolis_report),
+        (felt.g, other.seat_g),
+    ):
+        sides = np.stack(np.split(found.T, 2), axis=1)
+        np.testing.assert_allclose(sides, expected, rtol=0, atol=1e-11)
 
 
 def test_more_states_than_are_evaluated_at_once():

@@ -12,10 +12,10 @@ from des_cli.kinematics.chain import chain_of
 from des_cli.kinematics.onset import largest_onset
 from des_cli.kinematics.response import respond_on
 from des_cli.model.arrays import Floats
-from des_cli.model.machine import OccupantBounds
+from des_cli.model.machine import OccupantBounds, Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
-from des_cli.verify.felt import Felt
+from des_cli.verify.felt import Attitudes, Felt, SeatChain
 from des_cli.verify.occupant import check_occupant, excesses, steepness
 from tests.support.claims import failing, values_of
 from tests.support.free_case import Case, with_rates
@@ -34,7 +34,8 @@ def felt_of(**fields: Floats) -> Felt:
     m = next(iter(fields.values())).shape[1]
     zero = np.zeros((3, m))
     rest: dict[str, Any] = dict.fromkeys(("rate", "cross", "turning", "g", "angle"), zero)
-    return Felt(**{**rest, "rotation": np.zeros((3, 3, m)), **fields})
+    attitudes = Attitudes(SeatChain(DES, Seat()), np.zeros((m, 3)))
+    return Felt(**{**rest, "attitudes": attitudes, **fields})
 
 
 def g_at(component: int, state: int, value: float) -> Felt:
