@@ -13,7 +13,9 @@ import numpy as np
 from des_cli.kinematics.chain import Chain
 from des_cli.kinematics.coriolis_along import coriolis_blocks
 from des_cli.model.arrays import Floats
-from des_cli.model.motion import PIECE, Motion
+from des_cli.model.motion import Motion
+from des_cli.model.sides import in_pieces, integral_of
+from des_cli.reduction.fidelity import angle_deviation, joint_deviation
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.study_law import RUNAWAY
 from des_cli.study.backward_forward import adjoint_along, factors_of, follow
@@ -73,7 +75,7 @@ def compare(problem: Problem, modified: Motion, chain: Chain | None = None) -> B
         sweep_reduction=None if swept is None else relative_reduction(before, swept_energy),
         sweep_deviation=None if swept is None else joint_deviation(desired, swept),
         constant_p=p,
-        constant_deviation=_deviation(desired, slowed.angle(p)),
+        constant_deviation=angle_deviation(desired, slowed.angle(p)),
     )
 
 
@@ -99,26 +101,11 @@ def _sweep_once(problem: Problem) -> Motion | None:
 
 def weighted_energy(problem: Problem, motion: Motion) -> float:
     """Return int c' R1 c dt of a motion."""
-    energy = 0.0
-    for part, sides in coriolis_blocks(problem.chain, motion, problem.axes):
-        square = sum(np.sum((problem.r1 @ c) * c, axis=0) for c in sides)
-        energy += 0.5 * float(motion.step[part] @ square)
-    return energy
-
-
-def joint_deviation(reference: Motion, motion: Motion) -> float:
-    """Return ||theta - Theta|| / ||Theta|| over the joint angles."""
-    return _deviation(reference, motion.angle)
-
-
-def _deviation(reference: Motion, angle: Floats) -> float:
-    """Return the same of angles (n, 3)."""
-    off = angle - reference.angle
-    lost, size = (
-        float(np.einsum("n,nj,nj->", reference.weight, each, each))
-        for each in (off, reference.angle)
-    )
-    return float(np.sqrt(lost / max(size, 1e-300)))
+    square = np.empty(len(motion.step))
+    for part, (start, end) in coriolis_blocks(problem.chain, motion, problem.axes):
+        square[part] = np.sum((problem.r1 @ start) * start, axis=0)
+        square[part] += np.sum((problem.r1 @ end) * end, axis=0)
+    return integral_of(motion.step, square)
 
 
 class _Slowed:
@@ -138,9 +125,8 @@ class _Slowed:
     def energy(self, p: float) -> float:
         """Return the weighted energy of a factor."""
         desired, energy = self.problem.desired, 0.0
-        for first in range(0, len(desired.step), PIECE):
-            part = slice(first, min(first + PIECE, len(desired.step)))
-            samples = slice(first, part.stop + 1)
+        for part in in_pieces(len(desired.step)):
+            samples = slice(part.start, part.stop + 1)
             rates = (p * desired.rate_start[part], p * desired.rate_end[part])
             motion = Motion(desired.t[samples], self.angle(p, samples), *rates)
             energy += weighted_energy(self.problem, motion)

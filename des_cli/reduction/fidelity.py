@@ -10,7 +10,7 @@ import numpy as np
 from des_cli.kinematics.attitude import geodesic_angle, rotation
 from des_cli.kinematics.chain import Chain, seat_rotation
 from des_cli.kinematics.response import respond_on, with_shortfall
-from des_cli.model.arrays import Floats, inner, length
+from des_cli.model.arrays import Floats
 from des_cli.model.metric import (
     ANGULAR_ACCELERATION_DEVIATION,
     ANGULAR_ACCELERATION_ERROR,
@@ -26,8 +26,9 @@ from des_cli.model.metric import (
     UNFELT_ANGULAR_ACCELERATION,
     MetricKey,
 )
-from des_cli.model.motion import Motion, Shortfall, integrate_sides
+from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.response import SeatResponse
+from des_cli.model.sides import in_pieces, largest_of, square_of
 
 
 class Deviation:
@@ -87,54 +88,60 @@ class Deviation:
     def _turning(self) -> tuple[Floats, Floats]:
         return self.before.seat_angular_acceleration, self.after.seat_angular_acceleration
 
-    @property
-    def _g_error(self) -> Floats:
-        return self.after.seat_g - self.before.seat_g
+    def _share(self, before: Floats, after: Floats) -> float:
+        """Return the norm of a difference over that of what was there before."""
+        step = self.reference.step
+        return float(np.sqrt(square_of(step, after, before) / max(square_of(step, before), 1e-300)))
 
-    @property
-    def _turning_error(self) -> Floats:
-        return self.after.seat_angular_acceleration - self.before.seat_angular_acceleration
-
-    def _energy(self, vectors: Floats) -> float:
-        return float(integrate_sides(self.reference.step, inner(vectors, vectors)))
-
-    def _share(self, off: Floats, size: Floats) -> float:
-        return float(np.sqrt(self._energy(off) / max(self._energy(size), 1e-300)))
-
-    def _rms(self, off: Floats) -> float:
-        return float(np.sqrt(self._energy(off) / self.reference.step.sum()))
+    def _rms(self, vectors: Floats, less: Floats | None = None) -> float:
+        step = self.reference.step
+        return float(np.sqrt(square_of(step, vectors, less) / step.sum()))
 
     def _joints(self) -> float:
-        reference = self.reference.angle_sides
-        return self._share(self.modified.angle_sides - reference, reference)
+        return joint_deviation(self.reference, self.modified)
 
     def _seat_rate(self) -> float:
-        return self._share(self.after.seat_rate - self.before.seat_rate, self.before.seat_rate)
+        return self._share(self.before.seat_rate, self.after.seat_rate)
 
     def _turning_rms_ratio(self) -> float:
         before, after = (self._rms(turning) for turning in self._turning)
         return after / max(before, UNFELT_ANGULAR_ACCELERATION)
 
     def _turning_peak_ratio(self) -> float:
-        before, after = (float(np.max(length(turning))) for turning in self._turning)
+        before, after = (largest_of(turning) for turning in self._turning)
         return after / max(before, UNFELT_ANGULAR_ACCELERATION)
 
     def _attitude(self) -> float:
-        motions = (self.reference, self.modified)
-        one, other = (
-            seat_rotation(chain, motion.angle)
-            for chain, motion in zip(self.chains, motions, strict=True)
-        )
-        if self.shortfall is not None:
-            one = one @ rotation(self.shortfall.attitude)
-        return float(np.degrees(np.max(geodesic_angle(one, other))))
+        largest = 0.0
+        for part in in_pieces(len(self.reference.t)):
+            one, other = (
+                seat_rotation(chain, motion.angle[part])
+                for chain, motion in zip(self.chains, (self.reference, self.modified), strict=True)
+            )
+            if self.shortfall is not None:
+                one = one @ rotation(self.shortfall.attitude[part])
+            largest = max(largest, float(np.max(geodesic_angle(one, other))))
+        return float(np.degrees(largest))
 
     def _factors(self) -> float:
         if self.control is None or not self.control.shape[1]:
             return float("nan")
-        idle = (1.0 - np.stack([self.control[:-1], self.control[1:]], axis=1)) ** 2
-        step = self.reference.step
-        return float(integrate_sides(step, idle.mean(axis=2)) / step.sum())
+        idle = np.mean((1.0 - self.control) ** 2, axis=1)
+        return float(self.reference.weight @ idle / self.reference.step.sum())
+
+
+def joint_deviation(reference: Motion, motion: Motion) -> float:
+    """Return ||theta - Theta|| / ||Theta|| over the joint angles."""
+    return angle_deviation(reference, motion.angle)
+
+
+def angle_deviation(reference: Motion, angle: Floats) -> float:
+    """Return the same of joint angles (n, 3) [rad]."""
+    lost, size = (
+        float(np.einsum("n,nj,nj->", reference.weight, each, each))
+        for each in (angle - reference.angle, reference.angle)
+    )
+    return float(np.sqrt(lost / max(size, 1e-300)))
 
 
 _VALUES: Mapping[MetricKey, Callable[[Deviation], float]] = MappingProxyType(
@@ -143,12 +150,10 @@ _VALUES: Mapping[MetricKey, Callable[[Deviation], float]] = MappingProxyType(
         JOINT_DEVIATION_SQUARED: lambda off: off._joints() ** 2,
         FACTOR_DEVIATION: Deviation._factors,
         SEAT_RATE_DEVIATION: Deviation._seat_rate,
-        SEAT_G_DEVIATION: lambda off: off._share(off._g_error, off.before.seat_g),
-        SEAT_G_ERROR: lambda off: off._rms(off._g_error),
-        ANGULAR_ACCELERATION_DEVIATION: lambda off: off._share(
-            off._turning_error, off.before.seat_angular_acceleration
-        ),
-        ANGULAR_ACCELERATION_ERROR: lambda off: off._rms(off._turning_error),
+        SEAT_G_DEVIATION: lambda off: off._share(off.before.seat_g, off.after.seat_g),
+        SEAT_G_ERROR: lambda off: off._rms(off.after.seat_g, off.before.seat_g),
+        ANGULAR_ACCELERATION_DEVIATION: lambda off: off._share(*off._turning),
+        ANGULAR_ACCELERATION_ERROR: lambda off: off._rms(*off._turning[::-1]),
         ANGULAR_ACCELERATION_RMS_RATIO: Deviation._turning_rms_ratio,
         ANGULAR_ACCELERATION_PEAK_RATIO: Deviation._turning_peak_ratio,
         ATTITUDE_ERROR: Deviation._attitude,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.model.arrays import inner
+from des_cli.kinematics.response import respond_on
 from des_cli.model.machine import JOINTS
 from des_cli.model.metric import (
     ANGULAR_ACCELERATION_ERROR,
@@ -15,10 +15,11 @@ from des_cli.model.metric import (
     MetricKey,
 )
 from des_cli.model.metrics import Change, Changes, Executable
-from des_cli.model.motion import DesiredMotion, Motion, Shortfall, integrate_sides
+from des_cli.model.motion import DesiredMotion, Motion, Shortfall
 from des_cli.model.profile import Profile
-from des_cli.reduction.baseline import joint_deviation, relative_reduction
-from des_cli.reduction.fidelity import Deviation
+from des_cli.model.sides import square_of
+from des_cli.reduction.baseline import relative_reduction
+from des_cli.reduction.fidelity import Deviation, joint_deviation
 from des_cli.reduction.limits import find_violations
 
 _TOLD: tuple[MetricKey, ...] = (
@@ -77,12 +78,13 @@ def _cost(
     profile: Profile, before: Motion, after: Motion, missing: Shortfall | None = None
 ) -> Change:
     """Return what is felt, and done by the joints, of a change from one motion to another."""
+    if after is before and missing is None:
+        return _unchanged(profile, before)
     chains = (chain_of(profile.machine, profile.seat),) * 2
     deviation = Deviation.between(before, after, chains, profile.machine.gravity, shortfall=missing)
     moved = np.max(np.abs(after.angle - before.angle), axis=0)
     energies = (
-        float(integrate_sides(before.step, inner(each.coriolis_seat, each.coriolis_seat)))
-        for each in (deviation.before, deviation.after)
+        square_of(before.step, each.coriolis_seat) for each in (deviation.before, deviation.after)
     )
     return Change(
         joint_change_relative=joint_deviation(before, after),
@@ -91,4 +93,16 @@ def _cost(
         },
         coriolis_reduction=relative_reduction(*energies),
         metrics={metric: deviation.value(metric) for metric in _TOLD},
+    )
+
+
+def _unchanged(profile: Profile, motion: Motion) -> Change:
+    """Return the change from a motion to itself, which is none."""
+    response = respond_on(chain_of(profile.machine, profile.seat), profile.machine.gravity, motion)
+    energy = square_of(motion.step, response.coriolis_seat)
+    return Change(
+        joint_change_relative=0.0,
+        joint_change_max_rad=dict.fromkeys(JOINTS, 0.0),
+        coriolis_reduction=relative_reduction(energy, energy),
+        metrics=dict.fromkeys(_TOLD, 0.0),
     )

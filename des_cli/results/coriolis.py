@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from des_cli.model.arrays import Floats, length
-from des_cli.model.coriolis import COMPONENTS, Component
+from des_cli.model.arrays import Floats
+from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.felt import TurningSizes
 from des_cli.model.metrics import CrossCoupling, Objective, Part
-from des_cli.model.motion import integrate_sides
 from des_cli.model.response import Response
+from des_cli.model.sides import sizes_of
 from des_cli.reduction.baseline import relative_reduction
-from des_cli.results.felt import peak, rms
 
 
 def coriolis_metrics(
@@ -25,18 +24,18 @@ def coriolis_metrics(
     objective : float or None
         Reduction of what is weighed.
     """
+    by_axes = {
+        "seat": [sizes_of(step, each.coriolis_seat) for each in (before, after)],
+        "report": [sizes_of(step, each.coriolis_report) for each in (before, after)],
+    }
     parts = {}
     for component in COMPONENTS:
-        old, new = _part(before, component), _part(after, component)
-        energies = (float(integrate_sides(step, side**2)) for side in (old, new))
-        sizes = TurningSizes(rms(step, old), rms(step, new), peak(old), peak(new))
-        parts[component.key] = Part(relative_reduction(*energies), sizes)
+        old, new = by_axes[component.axes or "seat"]
+        # The length, which has no axes, comes last.
+        i = -1 if component.axes is None else component.index
+        sizes = TurningSizes(
+            float(old.rms[i]), float(new.rms[i]), float(old.peak[i]), float(new.peak[i])
+        )
+        reduction = relative_reduction(float(old.square[i]), float(new.square[i]))
+        parts[component.key] = Part(reduction, sizes)
     return CrossCoupling(parts, Objective(objective))
-
-
-def _part(response: Response, component: Component) -> Floats:
-    """Return one part of the Coriolis vector, (n - 1, 2) [rad/s^2]."""
-    if component.axes is None:
-        return length(response.coriolis_seat)
-    report = component.axes == "report"
-    return (response.coriolis_report if report else response.coriolis_seat)[..., component.index]

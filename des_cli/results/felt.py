@@ -18,8 +18,9 @@ from des_cli.model.felt import (
     TurningAxis,
     TurningSizes,
 )
-from des_cli.model.motion import Motion, integrate_sides
+from des_cli.model.motion import Motion
 from des_cli.model.response import SeatResponse
+from des_cli.model.sides import in_pieces, sizes_of
 
 WEIGHTLESS = 0.1
 """Size of the G-vector [g] below which it has no direction worth an angle: there the
@@ -65,53 +66,49 @@ def tilt_error(step: Floats, before: Floats, after: Floats) -> tuple[float | Non
         [deg], over the time in which neither vector is
         shorter than ``WEIGHTLESS``; None where there is no such time.
     """
-    across = length(np.cross(before, after))
-    angle = np.degrees(np.arctan2(across, inner(before, after)))
-    sizes = (length(before), length(after))
-    clear = np.minimum(*sizes) >= WEIGHTLESS
-    time = float(integrate_sides(step, clear.astype(float)))
-    if not time:
-        return None, None
-    square = float(integrate_sides(step, np.where(clear, angle, 0.0) ** 2))
-    return float(np.max(angle[clear])), float(np.sqrt(square / time))
-
-
-def rms(step: Floats, sides: Floats) -> float:
-    """Return the root of the mean square over time of (n - 1, 2) values on sides."""
-    return float(np.sqrt(integrate_sides(step, sides**2) / step.sum()))
-
-
-def peak(sides: Floats) -> float:
-    """Return the largest magnitude of values on sides."""
-    return float(np.max(np.abs(sides)))
+    time = square = largest = 0.0
+    for part in in_pieces(len(step)):
+        old, new = before[part], after[part]
+        across = length(np.cross(old, new))
+        angle = np.degrees(np.arctan2(across, inner(old, new)))
+        clear = np.minimum(length(old), length(new)) >= WEIGHTLESS
+        angle[~clear] = 0.0
+        time += 0.5 * float(step[part] @ np.sum(clear, axis=1))
+        square += 0.5 * float(step[part] @ inner(angle, angle))
+        largest = max(largest, float(np.max(angle)))
+    return (largest, float(np.sqrt(square / time))) if time else (None, None)
 
 
 def _sizes(step: Floats, before: Floats, after: Floats) -> list[tuple[float, float, float, float]]:
     """Return RMS and peak, before and after, of each component and of the magnitude."""
+    old, new = sizes_of(step, before), sizes_of(step, after)
+    each = (old.rms, new.rms, old.peak, new.peak)
     return [
-        (rms(step, old), rms(step, new), peak(old), peak(new))
-        for old, new in zip(_with_magnitude(before), _with_magnitude(after), strict=True)
+        (float(old_rms), float(new_rms), float(old_peak), float(new_peak))
+        for old_rms, new_rms, old_peak, new_peak in zip(*each, strict=True)
     ]
 
 
-def _with_magnitude(vectors: Floats) -> tuple[Floats, ...]:
-    return (*np.moveaxis(vectors, -1, 0), length(vectors))
-
-
 def _g_by_axis(motion: Motion, before: Floats, after: Floats) -> dict[GAxis, GSizes]:
-    onsets = (largest_onset(motion.t, before), largest_onset(motion.t, after))
-    found = {}
-    for index, axis in enumerate(G_AXES):
-        old, new = before[..., index], after[..., index]
-        found[axis] = GSizes(
-            *_extremes(old, onsets[0][index]),
-            *_extremes(new, onsets[1][index]),
-            rms_error_g=rms(motion.step, new - old),
-        )
-    return found
+    old, new = _extremes(motion.t, before), _extremes(motion.t, after)
+    off = np.zeros(len(G_AXES))
+    for part in in_pieces(len(motion.step)):
+        error = after[part] - before[part]
+        off += 0.5 * motion.step[part] @ np.einsum("nsi,nsi->ni", error, error)
+    rms = np.sqrt(off / np.sum(motion.step))
+    return {
+        axis: GSizes(*old[index], *new[index], rms_error_g=float(rms[index]))
+        for index, axis in enumerate(G_AXES)
+    }
 
 
-def _extremes(sides: Floats, onset: float) -> tuple[float, float, float, float, float]:
-    """Return peak, least and largest value, onset and largest jump of a component, (n - 1, 2)."""
-    jump = float(np.max(np.abs(sides[1:, 0] - sides[:-1, 1]), initial=0.0))
-    return peak(sides), float(np.min(sides)), float(np.max(sides)), float(onset), jump
+def _extremes(t: Floats, sides: Floats) -> list[tuple[float, float, float, float, float]]:
+    """Return peak, least and largest value, onset and largest jump of each component."""
+    values = sides.reshape(-1, sides.shape[2])
+    least, most = np.min(values, axis=0), np.max(values, axis=0)
+    jump = np.zeros(sides.shape[2])
+    for part in in_pieces(len(sides) - 1):
+        after = slice(part.start + 1, part.stop + 1)
+        np.maximum(jump, np.max(np.abs(sides[after, 0] - sides[part, 1]), axis=0), out=jump)
+    columns = (np.maximum(-least, most), least, most, largest_onset(t, sides), jump)
+    return [(a, b, c, d, e) for a, b, c, d, e in np.stack(columns, axis=1).tolist()]

@@ -40,10 +40,14 @@ def joint_metrics(
         By joint; a limit that the machine does not have is None.
     """
     peaks = measure_peaks(motion)
-    jerk = np.max(np.abs(jerk_at_samples(motion)), axis=0)
     limit = np.array([joint.acceleration for joint in machine.limits])
-    full = np.abs(motion.acceleration) >= AT_LIMIT * limit
-    share = motion.step @ full / motion.step.sum()
+    jerk, time = np.zeros(len(JOINTS)), np.zeros(len(JOINTS))
+    for piece in motion.pieces():
+        part = piece.motion
+        np.maximum(jerk, np.max(np.abs(jerk_at_samples(part)[piece.own]), axis=0), out=jerk)
+        full = np.abs(part.acceleration[piece.own_intervals]) >= AT_LIMIT * limit
+        time += part.step[piece.own_intervals] @ full
+    share = time / motion.step.sum()
     changes = sign_changes(motion.acceleration, IDLE * limit)
     broken = {v.joint for v in violations if v.motion == which}
     return {

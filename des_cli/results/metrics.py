@@ -23,7 +23,7 @@ from des_cli.model.metrics import (
     SolverFacts,
     SweepBaseline,
 )
-from des_cli.model.motion import DesiredMotion, Motion, Record, integrate_sides
+from des_cli.model.motion import DesiredMotion, Motion, Record
 from des_cli.model.profile import Profile
 from des_cli.model.response import Response
 from des_cli.model.run import Violation
@@ -156,7 +156,8 @@ def _fidelity(run: Measured) -> Fidelity:
     """
     record, modified = run.asked.motion, run.solution.modified
     before, after, step = run.before, run.after, record.step
-    square = integrate_sides(step, (modified.angle_sides - record.angle_sides) ** 2)
+    off = modified.angle - record.angle
+    square = np.einsum("n,nj,nj->j", record.weight, off, off)
     machine = run.profile.machine
     chains = (chain_of(machine, run.profile.seat), chain_of(machine, run.seat))
     deviation = Deviation(
