@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from des_cli.model.arrays import Floats
+from des_cli.model.motion import PIECE
 
 WINDOW = 0.1
 """Time [s] over which a change of G counts as one onset. A G that steps, as it does where
 a joint's acceleration steps, has no derivative; over a fixed time its onset is a number
 that does not depend on the grid. Nobody tells a rise over a tenth of a second from a step."""
-
-_BESIDE = 1e-9
-"""Share of the longest interval by which the ends of each are drawn in, so that a jump at a
-sample is a steep piece of one broken line."""
 
 _SAME = 1e-6
 """Share of the window within which a sample is at its end: of samples that are a whole
@@ -22,7 +21,10 @@ fraction of it apart, rounding of their times is not to say whether a jump count
 
 def largest_onset(t: Floats, sides: Floats) -> Floats:
     """Return the largest onset of each component, (m,); see `onsets`."""
-    return np.asarray(np.max(onsets(t, sides)[1], axis=1))
+    largest = np.zeros(sides.shape[2])
+    for _, onset in _blocks(t, sides):
+        np.maximum(largest, np.max(onset, axis=0, initial=0.0), out=largest)
+    return largest
 
 
 def onsets(t: Floats, sides: Floats) -> tuple[Floats, Floats]:
@@ -44,27 +46,44 @@ def onsets(t: Floats, sides: Floats) -> tuple[Floats, Floats]:
     onset : (m, k) array
         Magnitudes, in the unit of ``sides`` per second.
     """
+    begin, onset = (np.concatenate(each) for each in zip(*_blocks(t, sides), strict=True))
+    order = np.argsort(begin, kind="stable")
+    return begin[order], onset[order].T
+
+
+def _blocks(t: Floats, sides: Floats) -> Iterator[tuple[Floats, Floats]]:
+    """Yield first times (k,) and changes per second (k, m) of windows, block by block.
+
+    The difference of two broken lines is largest where one of them has its corner: before
+    a sample, or after it, and a window that lies a little earlier or later has both of its
+    ends there.
+    """
     window = min(WINDOW, float(t[-1] - t[0]))
-    step = np.diff(t)
-    beside = min(_BESIDE * float(np.max(step)), 0.25 * float(np.min(step)))
-    knots = np.stack([t[:-1] + beside, t[1:] - beside], axis=1).ravel()
-    values = sides.reshape(len(knots), -1)
-    # The difference of two broken lines is largest where one of them has its corner: before
-    # a sample, or after it, and a window that lies a little earlier or later has both of its
-    # ends there.
-    begin = np.concatenate([t, _at_samples(t - window, t, _SAME * window)])
-    end = np.concatenate([_at_samples(t + window, t, _SAME * window), t])
-    inside = (begin >= t[0]) & (end <= t[-1])
-    order = np.argsort(begin[inside], kind="stable")
-    begin, end = begin[inside][order], end[inside][order]
-    change = [
-        [
-            np.interp(end + side, knots, component) - np.interp(begin + side, knots, component)
-            for side in (beside, -beside)
-        ]
-        for component in values.T
-    ]
-    return begin, np.max(np.abs(change), axis=1) / window
+    for shift in (window, -window):
+        for first in range(0, len(t), PIECE):
+            here = t[first : first + PIECE]
+            there = _at_samples(here + shift, t, _SAME * window)
+            inside = (there >= t[0]) & (there <= t[-1])
+            here, there = here[inside], there[inside]
+            changes = [
+                np.abs(one - other)
+                for one, other in zip(
+                    _limits(t, sides, there), _limits(t, sides, here), strict=True
+                )
+            ]
+            yield np.minimum(here, there), np.maximum(*changes) / window
+
+
+def _limits(t: Floats, sides: Floats, times: Floats) -> tuple[Floats, Floats]:
+    """Return the values just after and just before times, (k, m) each."""
+    at = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 2)
+    share = (times - t[at]) / (t[at + 1] - t[at])
+    after = sides[at, 0] + share[:, None] * (sides[at, 1] - sides[at, 0])
+    before = after.copy()
+    # On a sample what is before it belongs to another interval, but at the very start.
+    on = (share == 0.0) & (at > 0)
+    before[on] = sides[at[on] - 1, 1]
+    return after, before
 
 
 def _at_samples(times: Floats, t: Floats, near: float) -> Floats:

@@ -83,11 +83,7 @@ def square_of(step: Floats, sides: Floats, less: Floats | None = None) -> float:
 
 def largest_of(sides: Floats) -> float:
     """Return the largest length of vectors (n - 1, 2, d)."""
-    return float(
-        np.sqrt(
-            max(
-                np.max(np.einsum("nsi,nsi->ns", sides[part], sides[part]))
-                for part in in_pieces(len(sides))
-            )
-        )
-    )
+    squares = [
+        np.max(np.einsum("nsi,nsi->ns", sides[part], sides[part])) for part in in_pieces(len(sides))
+    ]
+    return float(np.sqrt(np.max(squares)))

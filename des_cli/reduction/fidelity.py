@@ -112,7 +112,7 @@ class Deviation:
         return after / max(before, UNFELT_ANGULAR_ACCELERATION)
 
     def _attitude(self) -> float:
-        largest = 0.0
+        largest = []
         for part in in_pieces(len(self.reference.t)):
             one, other = (
                 seat_rotation(chain, motion.angle[part])
@@ -120,8 +120,8 @@ class Deviation:
             )
             if self.shortfall is not None:
                 one = one @ rotation(self.shortfall.attitude[part])
-            largest = max(largest, float(np.max(geodesic_angle(one, other))))
-        return float(np.degrees(largest))
+            largest.append(np.max(geodesic_angle(one, other)))
+        return float(np.degrees(np.max(largest)))
 
     def _factors(self) -> float:
         if self.control is None or not self.control.shape[1]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 
 import numpy as np
@@ -29,6 +30,7 @@ from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.verify.claim import Claim
 from des_cli.verify.felt import Attitudes, Felt
+from des_cli.verify.integrals import integral, sizes
 
 BUDGET_TOLERANCE = 1e-9
 """Relative excess over a budget that rounding alone may make."""
@@ -146,27 +148,32 @@ def measure(claim: Claim, metric: str, felt: Felt) -> float:
         return float(np.max(at_states(claim, metric, felt)))
     if metric == FACTOR_DEVIATION:
         return mean_square_one_minus_p(claim, claim.solution.control)
-    square = float(claim.weight @ integrand(metric, felt, claim.before)) / size(claim, metric)
+    lost = integral(claim, partial(integrand, metric), felt, claim.before)
+    square = lost / size(claim, metric)
     return square if INTEGRALS[metric].squared else float(np.sqrt(square))
 
 
 def integrand(metric: str, felt: Felt, before: Felt) -> Floats:
     """Return what the square of a metric is the integral of, at m states, (m,)."""
-    integral = INTEGRALS[metric]
-    values = getattr(felt, integral.field)
-    if integral.deviation:
-        values = values - getattr(before, integral.field)
-    return np.asarray(np.sum(values**2, axis=0))
+    kind = INTEGRALS[metric]
+    values = getattr(felt, kind.field)
+    if kind.deviation:
+        values = values - getattr(before, kind.field)
+    return np.asarray(np.einsum("im,im->m", values, values))
 
 
 def size(claim: Claim, metric: str) -> float:
     """Return what that integral is divided by."""
-    integral = INTEGRALS[metric]
-    if not integral.relative:
+    kind = INTEGRALS[metric]
+    if not kind.relative:
         return claim.duration
-    values = getattr(claim.before, integral.field)
-    least = NOTHING if integral.deviation else UNFELT_ANGULAR_ACCELERATION**2 * claim.duration
-    return max(float(claim.weight @ np.sum(values**2, axis=0)), least)
+
+    def square(before: Felt, _: Felt) -> Floats:
+        values = getattr(before, kind.field)
+        return np.asarray(np.einsum("im,im->m", values, values))
+
+    least = NOTHING if kind.deviation else UNFELT_ANGULAR_ACCELERATION**2 * claim.duration
+    return max(integral(claim, square, claim.before, claim.before), least)
 
 
 def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
@@ -181,8 +188,9 @@ def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:
         return _apart(felt.attitudes, claim.before.attitudes)
     if metric != ANGULAR_ACCELERATION_PEAK_RATIO:
         raise ValueError(f"{metric} is no largest value over time")
-    before, after = (np.sqrt(np.sum(each.turning**2, axis=0)) for each in (claim.before, felt))
-    return np.asarray(after / max(float(np.max(before)), UNFELT_ANGULAR_ACCELERATION))
+    largest = sizes(claim, claim.before.turning).peak[-1]
+    after = np.sqrt(np.einsum("im,im->m", felt.turning, felt.turning))
+    return np.asarray(after / max(largest, UNFELT_ANGULAR_ACCELERATION))
 
 
 def _apart(one: Attitudes, other: Attitudes) -> Floats:

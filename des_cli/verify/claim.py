@@ -15,7 +15,7 @@ from des_cli.model.motion import Motion, Record, Shortfall
 from des_cli.model.profile import Profile, Reduction
 from des_cli.model.solution import Solution
 from des_cli.reduction.problem import Problem
-from des_cli.verify.felt import Felt, SeatChain
+from des_cli.verify.felt import CHUNK, Felt, SeatChain
 from des_cli.verify.requested import as_requested
 
 ROUGH = 1e-3
@@ -107,12 +107,17 @@ class Claim:
     @cached_property
     def rough(self) -> bool:
         """Whether what was asked for is not smooth from sample to sample."""
-        count = len(self.requested.step)
-        rate = np.concatenate([self.before.rate[:, :count], self.before.rate[:, -1:]], axis=1)
-        if rate.shape[1] < 3:
-            return False
-        kink = rate[:, 1:-1] - 0.5 * (rate[:, 2:] + rate[:, :-2])
-        return bool(np.sum(kink**2) > ROUGH * np.sum(rate**2))
+        count, rate = len(self.requested.step), self.before.rate
+        kinks, size = 0.0, float(np.sum(rate[:, -1] ** 2))
+        for first in range(0, count, CHUNK):
+            last = min(first + CHUNK, count)
+            # The starts of the intervals, and of the two after them: the last start is an end.
+            here = rate[:, first : min(last + 2, count)]
+            if last + 2 > count:
+                here = np.concatenate([here, rate[:, -1:]], axis=1)
+            size += float(np.sum(here[:, : last - first] ** 2))
+            kinks += float(np.sum((here[:, 1:-1] - 0.5 * (here[:, 2:] + here[:, :-2])) ** 2))
+        return kinks > ROUGH * size
 
     @cached_property
     def weight(self) -> Floats:

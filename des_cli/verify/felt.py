@@ -81,6 +81,14 @@ class Attitudes:
         turn = None if self.turn is None else self.turn[at]
         return Attitudes(self.chain, self.angle[at], turn=turn)
 
+    def block(self, states: slice) -> Attitudes:
+        """Return those of neighbouring states, of a motion starts alone or ends alone."""
+        count = len(self.angle) - 1
+        shift = 1 - count if self.sided and states.start >= count else 0
+        at = slice(states.start + shift, states.stop + shift)
+        turn = None if self.turn is None else self.turn[at]
+        return Attitudes(self.chain, self.angle[at], turn=turn)
+
     def at_states(self, values: Floats) -> Floats:
         """Return values at the samples, (..., k), at the states, (..., m)."""
         if not self.sided:
@@ -123,6 +131,17 @@ class Felt:
             g=self.g[:, states],
             angle=self.angle[:, states],
             attitudes=self.attitudes.part(states),
+        )
+
+    def block(self, states: slice) -> Felt:
+        """Return neighbouring states, of a motion starts alone or ends alone, without a copy."""
+        return Felt(
+            rate=self.rate[:, states],
+            cross=self.cross[:, states],
+            turning=self.turning[:, states],
+            g=self.g[:, states],
+            angle=self.angle[:, states],
+            attitudes=self.attitudes.block(states),
         )
 
     @property

@@ -22,9 +22,10 @@ from des_cli.verify.budgets import integrand, keeps_budgets, spent_budgets
 from des_cli.verify.claim import STILL, Claim
 from des_cli.verify.directions import coarseness, find_directions
 from des_cli.verify.felt import Felt
+from des_cli.verify.integrals import Running, integral
 from des_cli.verify.multipliers import least_residual
 from des_cli.verify.occupant import check_occupant
-from des_cli.verify.slopes import Running, slopes_along, slopes_by_seat
+from des_cli.verify.slopes import slopes_along, slopes_by_seat
 
 COST_TOLERANCE = 1e-9
 """Relative difference of the recomputed cost."""
@@ -56,13 +57,13 @@ def check_cost(claim: Claim) -> list[Check]:
             claim.before,
         ),
     ):
-        found = 0.5 * float(claim.weight @ _weighted(claim.reduction, felt))
+        found = 0.5 * _cost(claim, felt)
         error = abs(told - found) / max(found, least)
         checks.append(Check(key, name, error, COST_TOLERANCE))
     reduced = claim.reduced
     if _desired_is_allowed(reduced):
         desired, modified = (
-            float(claim.weight @ _objective(claim.reduction, felt, reduced.before))
+            integral(claim, partial(_objective, claim.reduction), felt, reduced.before)
             for felt in (claim.executable, claim.after)
         )
         rise = (modified - desired) / max(desired, least)
@@ -77,9 +78,9 @@ def check_optimality(claim: Claim) -> list[Check]:
     Nothing is tested where limits hold everything, nor where there was no cross-coupling
     to reduce: such a maneuver is passed through.
     """
-    if claim.weight @ _weighted(claim.reduction, claim.before) <= STILL * claim.duration:
+    if _cost(claim, claim.before) <= STILL * claim.duration:
         return []
-    functions: list[Running] = [lambda felt, before: _objective(claim.reduction, felt, before)]
+    functions: list[Running] = [partial(_objective, claim.reduction)]
     functions += [partial(integrand, budget.metric) for budget in spent_budgets(claim)]
     directions = find_directions(claim)
     slopes = slopes_along(claim, claim.modified, claim.chain, directions, functions)
@@ -112,6 +113,11 @@ def _desired_is_allowed(claim: Claim) -> bool:
         return True
     bounds = claim.profile.machine.occupant
     return all(check.ok for check in check_occupant(bounds, claim.desired, claim.executable))
+
+
+def _cost(claim: Claim, felt: Felt) -> float:
+    """Return int c' R1 c dt [rad^2/s^3 times the weight]."""
+    return integral(claim, lambda here, _: _weighted(claim.reduction, here), felt, felt)
 
 
 def _weighted(reduction: Reduction, felt: Felt) -> Floats:

@@ -10,13 +10,10 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import OccupantBounds
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
-from des_cli.verify.felt import Felt
+from des_cli.verify.felt import CHUNK, Felt
 
 WINDOW = 0.1
 """Time [s] over which a change of G is an onset; see the nomenclature."""
-
-BESIDE = 1e-9
-"""Share of the longest interval by which a jump at a sample is set apart."""
 
 MEETS = 1e-6
 """Share of the window within which its other end meets a sample, whatever rounding says."""
@@ -89,35 +86,48 @@ def steepness(bounds: OccupantBounds, motion: Motion, felt: Felt) -> Floats:
 
 def largest_onsets(motion: Motion, felt: Felt) -> Floats:
     """Return the largest change of each component of G over ``WINDOW``, (3,) [g/s]."""
-    return np.asarray(np.max(_onset(motion, felt), axis=1))
+    largest = np.zeros(len(felt.g))
+    for _, onset in _onset_blocks(motion, felt):
+        np.maximum(largest, np.max(onset, axis=1), out=largest)
+    return largest
 
 
 def _onset(motion: Motion, felt: Felt) -> Floats:
-    """Return the change of G over ``WINDOW`` that begins or ends at each state, (3, m) [g/s].
-
-    Between the states G is a broken line that may jump at the samples; its change over a
-    fixed time is largest where the time begins or ends at a corner. A motion that is not
-    longer than ``WINDOW`` is one window.
-    """
-    t, count = motion.t, len(motion.step)
-    window = min(WINDOW, float(t[-1] - t[0]))
-    order = np.stack([np.arange(count), np.arange(count) + count], axis=1).ravel()
-    here = np.concatenate([t[:-1], t[1:]])[order]
-    beside = min(BESIDE * np.max(motion.step), 0.25 * np.min(motion.step))
-    aside = np.tile([beside, -beside], count)
+    """Return the change of G over ``WINDOW`` that begins or ends at each state, (3, m) [g/s]."""
     onset = np.zeros_like(felt.g)
-    for shift in (window, -window):
-        there = here + shift
-        sample = _nearest(t, there)
-        there = np.where(np.abs(there - sample) <= MEETS * window, sample, there)
-        inside = (there >= t[0]) & (there <= t[-1])
-        for component, line in zip(onset, felt.g[:, order], strict=True):
-            change = np.abs(np.interp(there + aside, here + aside, line) - line) / window
-            component[order] = np.maximum(component[order], np.where(inside, change, 0.0))
+    for states, change in _onset_blocks(motion, felt):
+        np.maximum(onset[:, states], change, out=onset[:, states])
     return onset
 
 
-def _nearest(t: Floats, times: Floats) -> Floats:
-    """Return the sample nearest to each time."""
+def _onset_blocks(motion: Motion, felt: Felt) -> Iterator[tuple[slice, Floats]]:
+    """Yield states with the change of G over a window that has them at one of its ends, (3, k).
+
+    Between the states G is a broken line that may jump at the samples; its change over a
+    fixed time is largest where the time begins or ends at a corner. A motion that is not
+    longer than ``WINDOW`` is one window. A window from just after a sample ends just after
+    what is there, and one from just before a sample just before it.
+    """
+    t, count = motion.t, len(motion.step)
+    window = min(WINDOW, float(t[-1] - t[0]))
     middles = 0.5 * (t[1:] + t[:-1])
-    return np.asarray(t[np.searchsorted(middles, times)])
+    for first in range(0, count, CHUNK):
+        last = min(first + CHUNK, count)
+        for side, shift in ((0, window), (0, -window), (1, window), (1, -window)):
+            there = t[first + side : last + side] + shift
+            sample = t[np.searchsorted(middles, there)]
+            there = np.where(np.abs(there - sample) <= MEETS * window, sample, there)
+            inside = (there >= t[0]) & (there <= t[-1])
+            states = slice(side * count + first, side * count + last)
+            change = np.abs(_beside(t, felt.g, there, side) - felt.g[:, states]) / window
+            yield states, np.where(inside, change, 0.0)
+
+
+def _beside(t: Floats, g: Floats, times: Floats, side: int) -> Floats:
+    """Return G (3, 2 (n - 1)) just after times, or with side 1 just before them, (3, k)."""
+    count = len(t) - 1
+    found = np.searchsorted(t, times, side="left" if side else "right") - 1
+    interval = np.clip(found, 0, count - 1)
+    part = np.clip((times - t[interval]) / (t[interval + 1] - t[interval]), 0.0, 1.0)
+    start, end = g[:, interval], g[:, count + interval]
+    return np.asarray(start + part * (end - start))

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +14,12 @@ from des_cli.model.machine import JOINTS
 from des_cli.model.motion import Motion
 from des_cli.verify.claim import Claim
 from des_cli.verify.directions import Direction
-from des_cli.verify.felt import Felt, SeatChain
+from des_cli.verify.felt import SeatChain
+from des_cli.verify.integrals import Running, integral
 
 STEP = 1e-4
 """Half step of the differences, in rad/s of a rate or rad of a seat angle: what is
 integrated is smooth, so that their error is of the order of 1e-8, relative."""
-
-Running: TypeAlias = Callable[[Felt, Felt], Floats]
-"""What is integrated, (m,): of what is felt, and of what is felt of the motion asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,5 +127,5 @@ def slopes_by_seat(
     for sign in (STEP, -STEP):
         seat = replace(chain.seat, **{angle: getattr(chain.seat, angle) + sign})
         felt = replace(chain, seat=seat).along(motion)
-        values.append([claim.weight @ f(felt, claim.before) for f in functions])
+        values.append([integral(claim, f, felt, claim.before) for f in functions])
     return np.asarray((np.array(values[:1]) - np.array(values[1:])) / (2.0 * STEP))

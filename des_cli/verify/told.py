@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from des_cli.model.arrays import Flags, Floats
-from des_cli.model.coriolis import COMPONENTS, Component
+from des_cli.model.coriolis import COMPONENTS
 from des_cli.model.felt import G_AXES, Felt, RateAxis, RateSizes, TurningAxis, TurningSizes
 from des_cli.model.loads import Driven
 from des_cli.model.machine import JOINTS
@@ -26,9 +26,9 @@ from des_cli.model.metrics import Metrics, Singularity, SolverFacts
 from des_cli.model.motion import Motion
 from des_cli.model.profile import BodyRates
 from des_cli.model.run import Check
-from des_cli.verify import felt as seat
 from des_cli.verify.budgets import measure
 from des_cli.verify.claim import Claim
+from des_cli.verify.integrals import Sizes, sizes, state_blocks
 from des_cli.verify.limits import STEP_TOLERANCE, magnitudes
 from des_cli.verify.occupant import largest_onsets
 from des_cli.verify.requested import turned
@@ -144,16 +144,13 @@ def _fidelity(claim: Claim, told: Metrics) -> Numbers:
         # A motion that has no factors has none that deviate.
         if value is not None or claim.solution.control.shape[1]:
             yield metric, value, measure(claim, metric, claim.after)
-    tilt, clear = _tilt(claim.before.g, claim.after.g)
-    if np.any(clear):
-        square = float(claim.weight @ tilt**2 / (claim.weight @ clear))
-        yield "tilt_error_max_deg", fidelity.tilt_error_max_deg, float(np.max(tilt))
-        yield "tilt_error_rms_deg", fidelity.tilt_error_rms_deg, math.sqrt(square)
+    if tilt := _tilts(claim):
+        yield "tilt_error_max_deg", fidelity.tilt_error_max_deg, tilt[0]
+        yield "tilt_error_rms_deg", fidelity.tilt_error_rms_deg, tilt[1]
     modified, requested = claim.modified, claim.requested
-    squares = claim.weight @ (_states(modified) - _states(requested)) ** 2
+    off = sizes(claim, claim.after.angle, claim.made.angle)
     for j, joint in enumerate(JOINTS):
-        rms = math.sqrt(squares[j] / claim.duration)
-        yield f"joint_rms_rad.{joint}", fidelity.joint_rms_rad.get(joint), rms
+        yield f"joint_rms_rad.{joint}", fidelity.joint_rms_rad.get(joint), off.rms[j]
         start, end = fidelity.offset("start"), fidelity.offset("end")
         for name, offset, row in (("start", start, 0), ("end", end, -1)):
             angle = modified.angle[row, j] - requested.angle[row, j]
@@ -164,79 +161,89 @@ def _fidelity(claim: Claim, told: Metrics) -> Numbers:
         yield f"end_error.{joint}_rate", end.rate.get(joint), float(rate)
 
 
+def _tilts(claim: Claim) -> tuple[float, float] | None:
+    """Return the largest angle between the G-vectors and its root mean square [deg].
+
+    Over the time in which neither is too short; None where there is none.
+    """
+    most, square, time = np.zeros(1), 0.0, 0.0
+    for states in state_blocks(len(claim.weight)):
+        tilt, clear = _tilt(claim.before.g[:, states], claim.after.g[:, states])
+        most = np.maximum(most, np.max(tilt))
+        square += float(claim.weight[states] @ tilt**2)
+        time += float(claim.weight[states] @ clear)
+    return (float(most[0]), math.sqrt(square / time)) if time else None
+
+
 def _tilt(before: Floats, after: Floats) -> tuple[Floats, Flags]:
     """Return the angle between two G-vectors [deg], zero where one is too short, and where not.
 
     By the chord between their directions, whose half is the sine of half the angle.
     """
-    sizes = _length(before), _length(after)
-    clear = np.minimum(*sizes) >= WEIGHTLESS
+    lengths = _length(before), _length(after)
+    clear = np.minimum(*lengths) >= WEIGHTLESS
     one, other = (
-        each / np.where(clear, size, 1.0) for each, size in zip((before, after), sizes, strict=True)
+        each / np.where(clear, length, 1.0)
+        for each, length in zip((before, after), lengths, strict=True)
     )
     half = np.where(clear, 0.5 * _length(one - other), 0.0)
     return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(half, 1.0)))), clear
 
 
-def _states(motion: Motion) -> Floats:
-    """Return the angles in the order of the claim's weights, (2 (n - 1), 3)."""
-    return np.concatenate([motion.angle[:-1], motion.angle[1:]])
-
-
 def _coriolis(claim: Claim, told: Metrics) -> Numbers:
+    by_axes = {
+        "seat": [sizes(claim, felt.cross) for felt in (claim.made, claim.after)],
+        "report": [sizes(claim, felt.cross_ground) for felt in (claim.made, claim.after)],
+    }
     for component in COMPONENTS:
         key, part = component.key, told.coriolis.parts[component.key]
-        old, new = (_part(each, component) for each in (claim.made, claim.after))
-        yield from _sizes(claim, key, part.sizes, old, new)
-        before = _rms(claim, old)
-        if before > UNCOUPLED:
-            yield f"{key}.reduction", part.reduction, 1.0 - (_rms(claim, new) / before) ** 2
+        old, new = by_axes[component.axes or "seat"]
+        # The length, which has no axes, comes last.
+        i = -1 if component.axes is None else component.index
+        yield from _sizes(key, part.sizes, old, new, i)
+        if old.rms[i] > UNCOUPLED:
+            yield f"{key}.reduction", part.reduction, 1.0 - (new.rms[i] / old.rms[i]) ** 2
 
 
 def _sizes(
-    claim: Claim, name: str, told: RateSizes | TurningSizes, old: Floats, new: Floats
+    name: str, told: RateSizes | TurningSizes, old: Sizes, new: Sizes, component: int
 ) -> Numbers:
-    """Yield root mean square and peak of values at all states, before and after."""
-    yield f"{name}.rms_before", told.rms.before, _rms(claim, old)
-    yield f"{name}.rms_after", told.rms.after, _rms(claim, new)
-    yield f"{name}.peak_before", told.peak.before, _peak(old)
-    yield f"{name}.peak_after", told.peak.after, _peak(new)
-
-
-def _part(felt: seat.Felt, component: Component) -> Floats:
-    if component.axes is None:
-        return _length(felt.cross)
-    along = felt.cross_ground if component.axes == "report" else felt.cross
-    return np.asarray(along[component.index])
+    """Yield root mean square and peak of a component, before and after."""
+    yield f"{name}.rms_before", told.rms.before, old.rms[component]
+    yield f"{name}.rms_after", told.rms.after, new.rms[component]
+    yield f"{name}.peak_before", told.peak.before, old.peak[component]
+    yield f"{name}.peak_after", told.peak.after, new.peak[component]
 
 
 def _felt(claim: Claim, told: Felt) -> Numbers:
     before, after = claim.before, claim.after
     turning = told.seat_angular_acceleration
-    named: list[tuple[str, RateSizes | TurningSizes]] = [
-        *((f"seat_rate.{each}", told.seat_rate[each]) for each in get_args(RateAxis)),
-        *((f"turning.{each}", turning[each]) for each in get_args(TurningAxis)),
-    ]
-    olds, news = ((*_and_length(felt.rate), *_and_length(felt.turning)) for felt in (before, after))
-    for (name, sizes), old, new in zip(named, olds, news, strict=True):
-        yield from _sizes(claim, name, sizes, old, new)
+    old, new = (sizes(claim, felt.rate) for felt in (before, after))
+    for i, rate_axis in enumerate(get_args(RateAxis)):
+        yield from _sizes(f"seat_rate.{rate_axis}", told.seat_rate[rate_axis], old, new, i)
+    old, new = (sizes(claim, felt.turning) for felt in (before, after))
+    for i, turning_axis in enumerate(get_args(TurningAxis)):
+        yield from _sizes(f"turning.{turning_axis}", turning[turning_axis], old, new, i)
     onsets = [
         largest_onsets(motion, each)
         for motion, each in ((claim.requested, before), (claim.modified, after))
     ]
+    off = sizes(claim, after.g, before.g)
     for i, axis in enumerate(G_AXES):
-        g, old, new = told.seat_g[axis], before.g[i], after.g[i]
-        yield f"seat_g.{axis}.peak_before", g.peak.before, _peak(old)
-        yield f"seat_g.{axis}.peak_after", g.peak.after, _peak(new)
-        yield f"seat_g.{axis}.min_before", g.least.before, float(np.min(old))
-        yield f"seat_g.{axis}.min_after", g.least.after, float(np.min(new))
-        yield f"seat_g.{axis}.max_before", g.largest.before, float(np.max(old))
-        yield f"seat_g.{axis}.max_after", g.largest.after, float(np.max(new))
+        g, was, now = told.seat_g[axis], before.g[i], after.g[i]
+        least = float(np.min(was)), float(np.min(now))
+        most = float(np.max(was)), float(np.max(now))
+        yield f"seat_g.{axis}.peak_before", g.peak.before, max(-least[0], most[0])
+        yield f"seat_g.{axis}.peak_after", g.peak.after, max(-least[1], most[1])
+        yield f"seat_g.{axis}.min_before", g.least.before, least[0]
+        yield f"seat_g.{axis}.min_after", g.least.after, least[1]
+        yield f"seat_g.{axis}.max_before", g.largest.before, most[0]
+        yield f"seat_g.{axis}.max_after", g.largest.after, most[1]
         yield f"seat_g.{axis}.onset_before", g.onset.before, float(onsets[0][i])
         yield f"seat_g.{axis}.onset_after", g.onset.after, float(onsets[1][i])
-        yield f"seat_g.{axis}.jump_before", g.jump.before, _jump(old)
-        yield f"seat_g.{axis}.jump_after", g.jump.after, _jump(new)
-        yield f"seat_g.{axis}.rms_error", g.rms_error_g, _rms(claim, new - old)
+        yield f"seat_g.{axis}.jump_before", g.jump.before, _jump(was)
+        yield f"seat_g.{axis}.jump_after", g.jump.after, _jump(now)
+        yield f"seat_g.{axis}.rms_error", g.rms_error_g, off.rms[i]
 
 
 def _limits(claim: Claim, told: Metrics) -> Numbers:
@@ -380,10 +387,6 @@ def _by_position(motion: Motion, j: int) -> float:
     return _peak(second[np.abs(motion.rate_step[:, j]) <= STEP_TOLERANCE])
 
 
-def _rms(claim: Claim, values: Floats) -> float:
-    return math.sqrt(float(claim.weight @ values**2) / claim.duration)
-
-
 def _peak(values: Floats) -> float:
     return float(np.max(np.abs(values), initial=0.0))
 
@@ -396,8 +399,3 @@ def _jump(values: Floats) -> float:
 
 def _length(vectors: Floats) -> Floats:
     return np.asarray(np.sqrt(np.sum(vectors**2, axis=0)))
-
-
-def _and_length(vectors: Floats) -> tuple[Floats, ...]:
-    """Return the components of vectors (3, m), and their lengths."""
-    return (*vectors, _length(vectors))

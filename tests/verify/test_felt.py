@@ -95,6 +95,10 @@ def test_attitudes_of_a_motion_are_those_of_its_states():
         np.testing.assert_allclose(
             each.part(some).cross_ground, ground[:, some], rtol=0, atol=1e-14
         )
+        for block in (slice(1, count), slice(count, count + 2)):
+            for name in ("g", "rotation", "cross_ground"):
+                found, expected = getattr(each.block(block), name), getattr(each, name)
+                np.testing.assert_allclose(found, expected[..., block], rtol=0, atol=1e-14)
     assert np.max(np.abs(turned.rotation - felt.rotation)) > 0.1
 
 

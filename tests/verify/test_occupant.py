@@ -15,8 +15,8 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import OccupantBounds, Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
-from des_cli.verify.felt import Attitudes, Felt, SeatChain
-from des_cli.verify.occupant import check_occupant, excesses, steepness
+from des_cli.verify.felt import CHUNK, Attitudes, Felt, SeatChain
+from des_cli.verify.occupant import check_occupant, excesses, largest_onsets, steepness
 from tests.support.claims import failing, values_of
 from tests.support.free_case import Case, with_rates
 
@@ -221,3 +221,13 @@ def test_onset_and_angular_acceleration_of_an_optimum_beyond_their_bounds(case: 
             ),
         ):
             assert (key in case.failed(machine=replace(DES, occupant=bounds))) is broken
+
+
+def test_the_onset_of_a_motion_longer_than_what_is_measured_at_once() -> None:
+    """By the program's own measure, on uneven steps with a jump at every sample."""
+    draw = np.random.default_rng(9)
+    t = np.cumsum(draw.uniform(0.5e-3, 1.5e-3, 2 * CHUNK + 5))
+    sides = np.sin(7.0 * t)[:-1, None, None] + 0.01 * draw.normal(size=(len(t) - 1, 2, 3))
+    felt = felt_of(g=np.concatenate([sides[:, 0], sides[:, 1]]).T)
+    found = largest_onsets(table(t), felt)
+    np.testing.assert_allclose(found, largest_onset(t, sides), rtol=1e-12)

@@ -25,6 +25,7 @@ from des_cli.kinematics.twist import SeatMotion
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import Motion, Shortfall
 from des_cli.model.response import SeatResponse
+from des_cli.model.sides import in_pieces
 from des_cli.reduction.free.terms import Quantity, value_of
 from des_cli.reduction.free.windows import Windows
 from des_cli.reduction.reference import sample_sides
@@ -135,10 +136,17 @@ def is_rough(response: SeatResponse, t: Floats, step: float) -> bool:
     step : float
         Of the grid [s]: samples that are farther apart it holds.
     """
-    close = t[2:] - t[:-2] <= 2.0 * step * (1.0 + CLOSE)
     for sides in (response.seat_rate, response.seat_g):
-        kink = sides[1:, 0] - 0.5 * (sides[:-1, 0] + sides[1:, 1])
-        if np.sum(kink[close] ** 2) > ROUGH * np.sum(sides[:, 0] ** 2):
+        kinks = size = 0.0
+        for part in in_pieces(len(t) - 1):
+            size += float(np.sum(sides[part, 0] ** 2))
+            after = slice(part.start + 1, min(part.stop + 1, len(t) - 1))
+            before = slice(part.start, after.stop - 1)
+            kink = sides[after, 0] - 0.5 * (sides[before, 0] + sides[after, 1])
+            apart = t[after.start + 1 : after.stop + 1] - t[before]
+            close = apart <= 2.0 * step * (1.0 + CLOSE)
+            kinks += float(close @ np.sum(kink**2, axis=1))
+        if kinks > ROUGH * size:
             return True
     return False
 

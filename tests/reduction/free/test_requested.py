@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -72,6 +74,19 @@ def test_a_rough_record_is_told_from_a_maneuver(rows):
         assert is_rough(response, t, GRID.step) == (noise > 0.0)
         # what lies farther apart than the knots, these hold
         assert not is_rough(response, t, 0.5 * (t[1] - t[0]))
+
+
+@pytest.mark.parametrize("length", [1, 3, 159])
+def test_one_rough_place_is_found_in_pieces(length, monkeypatch):
+    """Wherever it is, at the ends and where pieces join too."""
+    monkeypatch.setattr("des_cli.model.sides.PIECE", length)
+    t = np.linspace(0.0, 4.0, 161)
+    _, smooth = projected(motion_of(t, 0.0))
+    for at in (1, 2, 3, 80, 158, 159):
+        rate = smooth.seat_rate.copy()
+        rate[at, 0] += 0.8
+        rate[at - 1, 1] += 0.8
+        assert is_rough(replace(smooth, seat_rate=rate), t, GRID.step)
 
 
 def test_rows_that_are_longer_than_the_knots_leave_no_interval_without_any():
