@@ -148,9 +148,12 @@ def _free(claim: Claim) -> Flags:
     near = min(TIGHT * coarseness(claim), MOST_TIGHT)
     free = np.ones((n, len(JOINTS)), dtype=bool)
     if claim.enforced:
-        for quantity, values in magnitudes(claim.modified).items():
-            bound = np.array([getattr(limit, quantity) for limit in claim.profile.machine.limits])
-            free &= values < (1.0 - TIGHT) * bound
+        limits = claim.profile.machine.limits
+        for piece in claim.modified.pieces():
+            own = free[piece.first : piece.first + piece.own.stop - piece.own.start]
+            for quantity, values in magnitudes(piece.motion).items():
+                bound = np.array([getattr(limit, quantity) for limit in limits])
+                own &= values[piece.own] < (1.0 - TIGHT) * bound
         occupant = claim.profile.machine.occupant
         for _, _, excess in excesses(occupant, claim.modified, claim.after):
             free &= _at_samples(excess < -near)[:, None]

@@ -57,12 +57,24 @@ def integral(claim: Claim, running: Running, felt: Felt, before: Felt) -> float:
 
 def sizes(claim: Claim, vectors: Floats, less: Floats | None = None) -> Sizes:
     """Return the sizes of vectors (d, m), or of their differences from others."""
-    square, most = np.zeros(len(vectors) + 1), np.zeros(len(vectors) + 1)
+    if less is None:
+        return _sizes(claim, lambda states: vectors[:, states])
+    return _sizes(claim, lambda states: vectors[:, states] - less[:, states])
+
+
+def ground_sizes(claim: Claim, felt: Felt) -> Sizes:
+    """Return the sizes of the cross-coupling along ground axes."""
+    return _sizes(claim, lambda states: felt.block(states).cross_ground)
+
+
+def _sizes(claim: Claim, values: Callable[[slice], Floats]) -> Sizes:
+    """Return the sizes of vectors (d, k) at blocks of states."""
+    total, largest = np.zeros(1), np.zeros(1)
     for states in state_blocks(len(claim.weight)):
-        here = vectors[:, states] if less is None else vectors[:, states] - less[:, states]
-        squares = np.empty((len(square), here.shape[1]))
+        here = values(states)
+        squares = np.empty((len(here) + 1, here.shape[1]))
         np.multiply(here, here, out=squares[:-1])
         np.sum(squares[:-1], axis=0, out=squares[-1])
-        square += squares @ claim.weight[states]
-        np.maximum(most, np.max(squares, axis=1), out=most)
-    return Sizes(np.sqrt(square / claim.duration).tolist(), np.sqrt(most).tolist())
+        total = total + squares @ claim.weight[states]
+        largest = np.maximum(largest, np.max(squares, axis=1))
+    return Sizes(np.sqrt(total / claim.duration).tolist(), np.sqrt(largest).tolist())

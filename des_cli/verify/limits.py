@@ -20,23 +20,33 @@ RATE_ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
 """Relative rounding of a difference of three rates; a jerk divides it by the step squared."""
 
 
+QUANTITIES = ("angle", "rate", "acceleration", "jerk")
+"""What a joint has limits of."""
+
+
 def check_limits(claim: Claim) -> list[Check]:
     """Measure the table against every limit, as the relative excess."""
     if not claim.enforced:
         return []
-    motion = claim.table
-    found = magnitudes(motion)
-    found["jerk"] = np.maximum(found["jerk"] - _jerk_rounding(motion), 0.0)
+    found = {quantity: np.zeros(len(JOINTS)) for quantity in (*QUANTITIES, "rate_step")}
+    for piece in claim.table.pieces():
+        # Where a piece ends its samples lack neighbours, and are the next one's too.
+        here = magnitudes(piece.motion)
+        here["jerk"] -= _jerk_rounding(piece.motion)
+        here["rate_step"] = np.abs(piece.motion.rate_step)
+        for quantity, values in here.items():
+            largest = np.max(values, axis=0, initial=0.0)
+            found[quantity] = np.maximum(found[quantity], largest)
     checks = []
     for j, (joint, limit) in enumerate(zip(JOINTS, claim.profile.machine.limits, strict=True)):
-        for quantity, values in found.items():
+        for quantity in QUANTITIES:
             bound = getattr(limit, quantity)
             if np.isfinite(bound):
                 checks.append(
                     Check(
                         f"limits.{joint}.{quantity}",
                         f"relative excess of the {joint}'s {quantity} over its limit",
-                        float(np.max(values[:, j])) / bound - 1.0,
+                        float(found[quantity][j]) / bound - 1.0,
                         LIMIT_TOLERANCE,
                     )
                 )
@@ -44,7 +54,7 @@ def check_limits(claim: Claim) -> list[Check]:
             Check(
                 f"limits.{joint}.rate_step",
                 f"largest step of the {joint}'s rate [rad/s]",
-                float(np.max(np.abs(motion.rate_step[:, j]), initial=0.0)),
+                float(found["rate_step"][j]),
                 STEP_TOLERANCE,
             )
         )
@@ -91,6 +101,6 @@ def _jerk_rounding(motion: Motion) -> Floats:
     """
     allowance = np.zeros_like(motion.angle)
     step = np.minimum(motion.step[1:], motion.step[:-1])[:, None]
-    rate = np.max(np.abs(motion.rate_sides), axis=1)
+    rate = np.maximum(np.abs(motion.rate_start), np.abs(motion.rate_end))
     allowance[1:-1] = RATE_ROUNDING * np.maximum(rate[1:], rate[:-1]) / step**2
     return allowance

@@ -233,3 +233,16 @@ def test_a_limit_that_factors_break_by_little(
     )
     assert "limits.arm.acceleration" in keys
     assert set(keys) <= {"limits.arm.acceleration", "optimality"}
+
+
+@pytest.mark.parametrize("length", [1, 4, 39])
+def test_a_long_table_is_measured_in_pieces(length: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every excess is what it is in the whole, also where pieces join."""
+    draw = np.random.default_rng(4)
+    t = np.cumsum(draw.uniform(0.1, 0.3, 40))
+    start, end = draw.normal(size=(2, 39, 3))
+    claim = claim_of(Motion(t, draw.normal(size=(40, 3)), start, end))
+    whole = values_of(check_limits(claim))
+    monkeypatch.setattr("des_cli.model.motion.PIECE", length)
+    assert values_of(check_limits(claim)) == whole
+    assert len(whole) > 9

@@ -17,7 +17,7 @@ from des_cli.model.motion import Motion
 from des_cli.model.profile import BodyRates
 from des_cli.verify.claim import Claim
 from des_cli.verify.requested import turned
-from des_cli.verify.told import singularity_numbers
+from des_cli.verify.singularity import singularity_numbers
 from tests.support.claims import claim_of
 
 T = np.array([0.0, 0.5, 1.0, 2.0, 4.0])

@@ -70,6 +70,17 @@ def off(value: float) -> float:
     return value + 1e-7 * max(abs(value), 1e-3)
 
 
+def test_what_is_told_of_a_long_motion_is_found_in_pieces(
+    claim: Claim, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert claim.told is not None
+    whole = [check.value for check in check_told(claim, claim.told)]
+    for module in ("model.motion.PIECE", "verify.integrals.CHUNK", "verify.occupant.CHUNK"):
+        monkeypatch.setattr(f"des_cli.{module}", 7)
+    found = [check.value for check in check_told(claim, claim.told)]
+    assert found == pytest.approx(whole, abs=1e-11)
+
+
 def test_what_is_told_is_what_the_motion_does(claim: Claim) -> None:
     assert claim.told is not None
     checks = check_told(claim, claim.told)
