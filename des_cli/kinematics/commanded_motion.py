@@ -21,7 +21,7 @@ from des_cli.kinematics.coriolis import angular_acceleration_split
 from des_cli.kinematics.orientation import body_jacobian, least_singular_value
 from des_cli.kinematics.rate_field import RateField
 from des_cli.kinematics.refinement import as_they_are, resolve
-from des_cli.model.arrays import Flags, Floats
+from des_cli.model.arrays import Flags, Floats, frozen
 from des_cli.model.motion import DesiredMotion, Motion, Shortfall, mean_of_sides
 from des_cli.model.profile import BodyRates, JointCommands, Profile
 
@@ -58,16 +58,11 @@ def _from_joints(chain: Chain, profile: Profile, command: JointCommands) -> Desi
     turned = np.cumsum(0.5 * step * (arm[:-1] + arm[1:]))
     arm_angle = profile.initial_angle[0] + np.concatenate([[0.0], turned])
     angle = np.column_stack([arm_angle, command.position])
-    commanded = np.stack(
-        [
-            np.column_stack([arm[:-1], command.rate_start]),
-            np.column_stack([arm[1:], command.rate_end]),
-        ],
-        axis=1,
-    )
-    commanded += 0.0  # a negative zero would be a sign in the command table
+    # Zero is added for a negative zero would be a sign in the command table.
+    start = np.column_stack([arm[:-1], command.rate_start]) + 0.0
+    end = np.column_stack([arm[1:], command.rate_end]) + 0.0
     return DesiredMotion(
-        motion=Motion(profile.t, angle, commanded[:, 0], commanded[:, 1]),
+        motion=Motion(profile.t, frozen(angle), frozen(start), frozen(end)),
         least_singular_value=least_singular_value(chain, angle),
         damped=np.zeros(len(profile.t), dtype=bool),
         residual=np.zeros((len(profile.t), 3)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,8 @@ Flags: TypeAlias = NDArray[np.bool_]
 def read_only(values: ArrayLike, shape: tuple[int | None, ...]) -> Floats:
     """Return a read-only double-precision copy of ``values``.
 
+    What is read-only already, down to who owns the memory, is returned as it is.
+
     Parameters
     ----------
     values : array_like
@@ -31,7 +33,7 @@ def read_only(values: ArrayLike, shape: tuple[int | None, ...]) -> Floats:
     ValueError
         If the shape is another one.
     """
-    array = np.array(values, dtype=np.float64)
+    array = values if _is_frozen(values) else np.array(values, dtype=np.float64)
     fits = array.ndim == len(shape) and all(
         want is None or want == have for want, have in zip(shape, array.shape, strict=True)
     )
@@ -39,6 +41,22 @@ def read_only(values: ArrayLike, shape: tuple[int | None, ...]) -> Floats:
         raise ValueError(f"shape {array.shape}, expected {shape}")
     array.flags.writeable = False
     return array
+
+
+def frozen(values: Floats) -> Floats:
+    """Make an array of the caller's own read-only, so that the model need not copy it."""
+    values.flags.writeable = False
+    return values
+
+
+def _is_frozen(values: ArrayLike) -> TypeGuard[Floats]:
+    """Return whether nobody can write to an array of doubles, not through its base either."""
+    if not isinstance(values, np.ndarray) or values.dtype != np.float64:
+        return False
+    owner: object = values if values.base is None else values.base
+    if not isinstance(owner, np.ndarray) or not owner.flags.owndata:
+        return False
+    return not values.flags.writeable and not owner.flags.writeable
 
 
 def freeze(record: Any, name: str, shape: tuple[int | None, ...]) -> None:

@@ -116,7 +116,7 @@ class _Slowed:
         # The arm is commanded by its rate: its angle is what that integrates to.
         rise = 0.5 * desired.step * (desired.rate_start[:, 0] + desired.rate_end[:, 0])
         self.rise = desired.angle - desired.angle[0]
-        self.rise[1:, 0] = np.cumsum(rise)
+        np.cumsum(rise, out=self.rise[1:, 0])
 
     def angle(self, p: float, samples: slice = slice(None)) -> Floats:
         """Return the angles of a factor at samples, (n, 3) [rad]."""

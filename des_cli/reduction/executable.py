@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Floats, frozen
 from des_cli.model.machine import JOINTS, JointLimits, Machine
 from des_cli.model.motion import Motion
 from des_cli.reduction.free.limit_rows import LimitRows
@@ -220,13 +220,19 @@ def sample_spline(spline: ExecutableSpline, t: Floats) -> Motion:
     are off by a twelfth of the squared step times the change of the acceleration.
     """
     first = spline.grid.values(spline.control, t[:1])[0]
-    return integrate_rates(t, first, spline.grid.values(spline.control, t, 1))
+    return integrate_rates(t, first, frozen(spline.grid.values(spline.control, t, 1)))
 
 
 def integrate_rates(t: Floats, first: Floats, rate: Floats) -> Motion:
     """Return the motion from given angles with rates that are linear between samples."""
-    increment = np.cumsum(0.5 * np.diff(t)[:, None] * (rate[:-1] + rate[1:]), axis=0)
-    return Motion(t, first + np.vstack([np.zeros(3), increment]), rate[:-1], rate[1:])
+    angle = np.empty_like(rate)
+    angle[0] = 0.0
+    increment = angle[1:]
+    np.add(rate[:-1], rate[1:], out=increment)
+    increment *= 0.5 * np.diff(t)[:, None]
+    np.cumsum(increment, axis=0, out=increment)
+    angle += first
+    return Motion(t, frozen(angle), rate[:-1], rate[1:])
 
 
 def _through_ends(grid: SplineGrid, desired: Motion, ends: Ends) -> Floats:

@@ -23,6 +23,9 @@ ORDER = 4
 FEWEST_INTERVALS = 3
 """So that conditions at the two ends do not share control points."""
 
+PIECE = 8192
+"""Times at which a spline is evaluated at once: what is made of them stays in a cache."""
+
 STENCILS = tuple(
     np.array(stencil) for stencil in ((1.0,), (-1.0, 1.0), (1.0, -2.0, 1.0), (-1.0, 3.0, -3.0, 1.0))
 )
@@ -126,7 +129,11 @@ class SplineGrid:
         -------
         (q, d) array
         """
-        at = (np.asarray(t) - self.start) / self.step
+        t = np.asarray(t)
+        if len(t) > PIECE:
+            pieces = (t[first : first + PIECE] for first in range(0, len(t), PIECE))
+            return np.concatenate([self.values(control, piece, order) for piece in pieces])
+        at = (t - self.start) / self.step
         interval = np.clip(at.astype(np.intp), 0, self.intervals - 1)
         if order == 1:
             # From differences, which are small: where steps are microseconds, a jerk would

@@ -16,9 +16,10 @@ import numpy as np
 
 from des_cli.kinematics.chain import Chain
 from des_cli.kinematics.coriolis_along import coriolis_slope
-from des_cli.model.arrays import Floats
+from des_cli.model.arrays import Floats, frozen
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Axes
+from des_cli.model.sides import in_pieces
 
 
 def adjoint_along(motion: Motion, chain: Chain, axes: Axes, r1: Floats) -> Floats:
@@ -77,11 +78,19 @@ def follow(desired: Motion, factors: Floats) -> Motion:
         Ones return the desired motion, but for the arm's angle where that is not what
         its rates integrate to: the arm is commanded by its velocity.
     """
-    first, last = factors[:-1], factors[1:]
-    start, end = first * desired.rate_start, last * desired.rate_end
-    half = 0.5 * desired.step[:, None]
-    missed = np.diff(desired.angle, axis=0) - half * (desired.rate_start + desired.rate_end)
-    missed[:, 0] = 0.0
-    moved = half * (start + end) + 0.5 * (first + last) * missed
-    angle = np.vstack([desired.angle[:1], desired.angle[0] + np.cumsum(moved, axis=0)])
-    return Motion(desired.t, angle, start, end)
+    start, end = factors[:-1] * desired.rate_start, factors[1:] * desired.rate_end
+    angle = np.empty_like(desired.angle)
+    angle[0] = 0.0
+    for part in in_pieces(len(desired.step)):
+        samples = slice(part.start, part.stop + 1)
+        half = 0.5 * desired.step[part, None]
+        straight = half * (desired.rate_start[part] + desired.rate_end[part])
+        missed = np.diff(desired.angle[samples], axis=0) - straight
+        missed[:, 0] = 0.0
+        both = factors[samples][:-1] + factors[samples][1:]
+        moved = half * (start[part] + end[part])
+        moved += 0.5 * both * missed
+        angle[part.start + 1 : part.stop + 1] = moved
+    np.cumsum(angle, axis=0, out=angle)
+    angle += desired.angle[0]
+    return Motion(desired.t, frozen(angle), frozen(start), frozen(end))

@@ -110,8 +110,6 @@ class Felt:
         Its whole change dW/dt [rad/s^2].
     g : (3, m) array
         G-vector in the pilot's signs [g].
-    angle : (3, m) array
-        Of the joints [rad].
     attitudes : Attitudes
     """
 
@@ -119,7 +117,6 @@ class Felt:
     cross: Floats
     turning: Floats
     g: Floats
-    angle: Floats
     attitudes: Attitudes
 
     def part(self, states: NDArray[np.intp]) -> Felt:
@@ -129,7 +126,6 @@ class Felt:
             cross=self.cross[:, states],
             turning=self.turning[:, states],
             g=self.g[:, states],
-            angle=self.angle[:, states],
             attitudes=self.attitudes.part(states),
         )
 
@@ -140,9 +136,13 @@ class Felt:
             cross=self.cross[:, states],
             turning=self.turning[:, states],
             g=self.g[:, states],
-            angle=self.angle[:, states],
             attitudes=self.attitudes.block(states),
         )
+
+    @property
+    def angle(self) -> Floats:
+        """Of the joints, (3, m) [rad]."""
+        return self.attitudes.at_states(self.attitudes.angle.T)
 
     @property
     def rotation(self) -> Floats:
@@ -203,7 +203,7 @@ class SeatChain:
             turns = self._turns(angle[part])
             self._carry(turns, rate[part].T, acceleration[part].T, vectors[..., part])
         rates, cross, turning, g = vectors
-        return Felt(rates, cross, turning, g, angle.T, Attitudes(self, angle))
+        return Felt(rates, cross, turning, g, Attitudes(self, angle))
 
     def along(self, motion: Motion) -> Felt:
         """Evaluate a motion at the start of every interval, then at the end of every one.
@@ -226,10 +226,8 @@ class SeatChain:
                 ]
                 out = vectors[..., shift * count + first : shift * count + last]
                 self._carry(sides, rate, acceleration, out)
-        attitudes = Attitudes(self, motion.angle, sided=True)
         rates, cross, turning, g = vectors
-        angle = attitudes.at_states(motion.angle.T)
-        return Felt(rates, cross, turning, g, angle, attitudes)
+        return Felt(rates, cross, turning, g, Attitudes(self, motion.angle, sided=True))
 
     def axes(self, angle: Floats) -> Floats:
         """Return W along seat axes per unit rate of each joint, (m, 3, 3 joint)."""

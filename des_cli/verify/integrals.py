@@ -67,6 +67,11 @@ def ground_sizes(claim: Claim, felt: Felt) -> Sizes:
     return _sizes(claim, lambda states: felt.block(states).cross_ground)
 
 
+def angle_changes(claim: Claim, felt: Felt, before: Felt) -> Sizes:
+    """Return the sizes of the differences of the joints' angles."""
+    return _sizes(claim, lambda states: felt.block(states).angle - before.block(states).angle)
+
+
 def _sizes(claim: Claim, values: Callable[[slice], Floats]) -> Sizes:
     """Return the sizes of vectors (d, k) at blocks of states."""
     total, largest = np.zeros(1), np.zeros(1)

@@ -25,7 +25,7 @@ from des_cli.model.motion import Motion
 from des_cli.model.run import Check
 from des_cli.verify.budgets import measure
 from des_cli.verify.claim import Claim
-from des_cli.verify.integrals import Sizes, ground_sizes, sizes, state_blocks
+from des_cli.verify.integrals import Sizes, angle_changes, ground_sizes, sizes, state_blocks
 from des_cli.verify.limits import STEP_TOLERANCE, magnitudes
 from des_cli.verify.occupant import largest_onsets
 from des_cli.verify.singularity import Numbers, singularity_numbers
@@ -131,7 +131,7 @@ def _fidelity(claim: Claim, told: Metrics) -> Numbers:
         yield "tilt_error_max_deg", fidelity.tilt_error_max_deg, tilt[0]
         yield "tilt_error_rms_deg", fidelity.tilt_error_rms_deg, tilt[1]
     modified, requested = claim.modified, claim.requested
-    off = sizes(claim, claim.after.angle, claim.made.angle)
+    off = angle_changes(claim, claim.after, claim.made)
     for j, joint in enumerate(JOINTS):
         yield f"joint_rms_rad.{joint}", fidelity.joint_rms_rad.get(joint), off.rms[j]
         start, end = fidelity.offset("start"), fidelity.offset("end")

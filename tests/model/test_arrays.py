@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from des_cli.model.arrays import Floats, freeze, read_only
+from des_cli.model.arrays import Floats, freeze, frozen, read_only
 
 
 @dataclass(frozen=True)
@@ -44,3 +44,25 @@ def test_a_field_of_a_frozen_record_becomes_its_copy() -> None:
     source[:] = 0.0
     assert record.values.tolist() == [0.0, 1.0, 2.0]
     assert not record.values.flags.writeable
+
+
+def test_what_nobody_can_change_is_not_copied() -> None:
+    """Nor a view of it: both ends of the intervals of a smooth motion are one array."""
+    kept = frozen(np.zeros((4, 3)))
+    assert read_only(kept, (4, 3)) is kept
+    assert np.shares_memory(read_only(kept[1:], (3, 3)), kept)
+
+
+def test_what_somebody_can_change_still_is_copied() -> None:
+    """Read-only views of an array, of bytes that are not, and other types than double."""
+    owner = np.zeros((4, 3))
+    view = owner[1:]
+    view.flags.writeable = False
+    memory = np.frombuffer(bytearray(96), dtype=np.float64).reshape(4, 3)
+    memory.flags.writeable = False
+    single = np.zeros((4, 3), dtype=np.float32)
+    single.flags.writeable = False
+    for values in (view, memory, single):
+        kept = read_only(values, (None, 3))
+        assert kept.dtype == np.float64
+        assert not np.shares_memory(kept, values)

@@ -41,6 +41,9 @@ ALL_BUT_FACTORS = sorted(set(METRICS) - {"mean_square_one_minus_p"})
 
 def scaled(field: str, by: float) -> Felt:
     """What is asked for, with one of its vectors longer."""
+    if field == "angle":
+        attitudes = CLAIM.before.attitudes
+        return replace(CLAIM.before, attitudes=replace(attitudes, angle=by * attitudes.angle))
     return replace(CLAIM.before, **{field: by * getattr(CLAIM.before, field)})
 
 

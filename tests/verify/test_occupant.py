@@ -33,7 +33,7 @@ def felt_of(**fields: Floats) -> Felt:
     """What is felt where only some of it is anything."""
     m = next(iter(fields.values())).shape[1]
     zero = np.zeros((3, m))
-    rest: dict[str, Any] = dict.fromkeys(("rate", "cross", "turning", "g", "angle"), zero)
+    rest: dict[str, Any] = dict.fromkeys(("rate", "cross", "turning", "g"), zero)
     attitudes = Attitudes(SeatChain(DES, Seat()), np.zeros((m, 3)))
     return Felt(**{**rest, "attitudes": attitudes, **fields})
 
