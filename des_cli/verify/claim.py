@@ -75,11 +75,18 @@ class Claim:
     from_profile: bool = True
     told: Metrics | None = None
 
-    @cached_property
+    @property
     def reduced(self) -> Claim:
         """The claim on what was reduced: budgets and optimality are round that motion."""
         if self.held is None or self.held == Record(self.requested, self.shortfall):
             return self
+        return self._of_held
+
+    @cached_property
+    def _of_held(self) -> Claim:
+        # Beside `reduced`, which may be the claim: one that holds itself lives on when it is
+        # done with, and all that is felt of long motions with it.
+        assert self.held is not None
         return replace(
             self, requested=self.held.motion, shortfall=self.held.shortfall, from_profile=False
         )

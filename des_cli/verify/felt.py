@@ -215,19 +215,30 @@ class SeatChain:
         """
         count = len(motion.t) - 1
         vectors = np.empty((4, 3, 2 * count))
+        for part, sides in self.blocks(motion):
+            for shift, side in zip((0, count), sides, strict=True):
+                vectors[..., shift + part.start : shift + part.stop] = side
+        rates, cross, turning, g = vectors
+        return Felt(rates, cross, turning, g, Attitudes(self, motion.angle, sided=True))
+
+    def blocks(self, motion: Motion) -> Iterator[tuple[slice, Floats]]:
+        """Yield intervals, with the vectors at their starts and at their ends, (2, 4, 3, m).
+
+        Rate, cross-coupling, dW/dt and G, as of `Felt`; overwritten by the next block.
+        """
+        count = len(motion.t) - 1
+        held = np.empty((2, 4, 3, min(CHUNK, count)))
         for first in range(0, count, CHUNK):
             last = min(first + CHUNK, count)
             start, end = motion.rate_start[first:last].T, motion.rate_end[first:last].T
             acceleration = (end - start) / (motion.t[first + 1 : last + 1] - motion.t[first:last])
             turns = self._turns(motion.angle[first : last + 1])
-            for rate, shift in ((start, 0), (end, 1)):
-                sides = [
-                    (c[shift : shift + last - first], s[shift:][: last - first]) for c, s in turns
-                ]
-                out = vectors[..., shift * count + first : shift * count + last]
-                self._carry(sides, rate, acceleration, out)
-        rates, cross, turning, g = vectors
-        return Felt(rates, cross, turning, g, Attitudes(self, motion.angle, sided=True))
+            sides = held[..., : last - first]
+            for side, rate in enumerate((start, end)):
+                at = slice(side, side + last - first)
+                here = [(cosine[at], sine[at]) for cosine, sine in turns]
+                self._carry(here, rate, acceleration, sides[side])
+            yield slice(first, last), sides
 
     def axes(self, angle: Floats) -> Floats:
         """Return W along seat axes per unit rate of each joint, (m, 3, 3 joint)."""

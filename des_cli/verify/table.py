@@ -168,14 +168,19 @@ class Ride:
 def ride_of(table: CommandTable, machine: Machine, seat: Seat) -> Ride:
     """Return what the seat does along a table of at least ``LEAST_ROWS`` rows."""
     motion = Played(table).middles
-    felt = SeatChain(machine, seat).along(motion)
-    square = np.sum(felt.turning**2, axis=0)
-    weight = np.tile(motion.step, 2)
+    m = len(motion.step)
+    total, largest, g = 0.0, np.zeros(1), np.empty((3, 2 * m))
+    for part, (start, end) in SeatChain(machine, seat).blocks(motion):
+        for shift, (_, _, turning, here) in ((0, start), (m, end)):
+            square = np.sum(turning**2, axis=0)
+            total += float(motion.step[part] @ square)
+            largest = np.maximum(largest, np.max(square))
+            g[:, shift + part.start : shift + part.stop] = here
     return Ride(
         motion.t[:-1] + 0.5 * motion.step,
-        float(np.sqrt(weight @ square / np.sum(weight))),
-        float(np.sqrt(np.max(square))),
-        felt.g,
+        float(np.sqrt(0.5 * total / np.sum(motion.step))),
+        float(np.sqrt(largest[0])),
+        g,
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -130,3 +132,16 @@ def test_one_sample_that_is_off_is_rough(at: int) -> None:
         moved = rate.copy()
         moved[at, 0] += off
         assert claim_of(with_rates(t, np.zeros(3), moved * [1.0, 0.0, 0.0])).rough is rough
+
+
+def test_a_claim_that_is_done_with_holds_nothing() -> None:
+    """What is felt of long motions is let go at once, and not when garbage is collected."""
+    claim = claim_of(MODIFIED, requested=REQUESTED)
+    assert claim.reduced is claim
+    felt = weakref.ref(claim.after)
+    gc.disable()
+    try:
+        del claim
+        assert felt() is None
+    finally:
+        gc.enable()
