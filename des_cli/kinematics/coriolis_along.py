@@ -16,6 +16,7 @@ from des_cli.kinematics.trig_polynomial import TrigPolynomial, basis
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import Motion
 from des_cli.model.profile import Axes
+from des_cli.model.sides import integral_of
 
 BLOCK = 2048
 """Intervals that are evaluated at a time."""
@@ -49,6 +50,23 @@ def coriolis_blocks(
             for at, rate in zip((slice(None, -1), slice(1, None)), rates, strict=True)
         )
         yield part, (start, end)
+
+
+def weighted_square(chain: Chain, motion: Motion, axes: Axes, r1: Floats) -> float:
+    """Return ``int c' R1 c dt`` of a motion, by the trapezoidal rule [rad^2/s^3].
+
+    Parameters
+    ----------
+    chain : Chain
+    motion : Motion
+    axes : {"report", "seat"}
+    r1 : (3, 3) array
+    """
+    square = np.empty(len(motion.t) - 1)
+    for part, (start, end) in coriolis_blocks(chain, motion, axes):
+        square[part] = np.sum((r1 @ start) * start, axis=0)
+        square[part] += np.sum((r1 @ end) * end, axis=0)
+    return integral_of(motion.step, square)
 
 
 def coriolis_slope(chain: Chain, motion: Motion, axes: Axes, r1: Floats) -> Floats:

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from des_cli.kinematics.chain import Chain
-from des_cli.kinematics.coriolis_along import coriolis_blocks
+from des_cli.kinematics.coriolis_along import weighted_square
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import Motion
-from des_cli.model.sides import in_pieces, integral_of
+from des_cli.model.sides import in_pieces
 from des_cli.reduction.fidelity import angle_deviation, joint_deviation
 from des_cli.reduction.problem import Problem
 from des_cli.reduction.study_law import RUNAWAY
@@ -101,11 +101,7 @@ def _sweep_once(problem: Problem) -> Motion | None:
 
 def weighted_energy(problem: Problem, motion: Motion) -> float:
     """Return int c' R1 c dt of a motion."""
-    square = np.empty(len(motion.step))
-    for part, (start, end) in coriolis_blocks(problem.chain, motion, problem.axes):
-        square[part] = np.sum((problem.r1 @ start) * start, axis=0)
-        square[part] += np.sum((problem.r1 @ end) * end, axis=0)
-    return integral_of(motion.step, square)
+    return weighted_square(problem.chain, motion, problem.axes, problem.r1)
 
 
 class _Slowed:

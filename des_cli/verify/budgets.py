@@ -210,7 +210,12 @@ def mean_square_one_minus_p(claim: Claim, control: Floats) -> float:
 
 def _torn(motion: Motion) -> bool:
     """Return whether positions jump between samples by what no rate tells."""
-    by_position = np.diff(motion.angle, axis=0) / motion.step[:, None]
-    off = np.abs(by_position - 0.5 * (motion.rate_start + motion.rate_end))
-    fastest = np.max(np.abs(motion.rate_sides), axis=(0, 1))
+    off, fastest = np.zeros(3), np.zeros(3)
+    for piece in motion.pieces():
+        part = piece.motion
+        by_position = np.diff(part.angle, axis=0) / part.step[:, None]
+        apart = np.abs(by_position - 0.5 * (part.rate_start + part.rate_end))
+        off = np.maximum(off, np.max(apart, axis=0))
+        for rate in (part.rate_start, part.rate_end):
+            fastest = np.maximum(fastest, np.max(np.abs(rate), axis=0))
     return bool(np.any(off > TORN * fastest))

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from des_cli.kinematics.chain import chain_of
-from des_cli.kinematics.coriolis import coriolis
+from des_cli.kinematics.coriolis_along import weighted_square
 from des_cli.kinematics.response import respond_on
 from des_cli.model.arrays import Floats
 from des_cli.model.machine import Seat
 from des_cli.model.metric import METRICS, PEAK_METRICS, Budget, MetricKey
-from des_cli.model.motion import Motion, Record, integrate_sides
+from des_cli.model.motion import Motion, Record
 from des_cli.model.profile import Axes
 from des_cli.model.solution import Iteration, Solution, Status
 from des_cli.reduction.change import Change
@@ -167,9 +167,7 @@ class Answers:
         """Return J = 1/2 int c' R1 c dt of a motion as its table plays it."""
         chain = chain_of(self.task.machine, seat)
         axes: Axes = "report" if in_ground_axes(self.task.reduction) else "seat"
-        c = coriolis(chain, motion.angle_sides, motion.rate_sides, axes)
-        running = np.sum((c @ self.task.reduction.r1) * c, axis=-1)
-        return 0.5 * float(integrate_sides(motion.step, running))
+        return 0.5 * weighted_square(chain, motion, axes, self.task.reduction.r1)
 
     def unkept(self, spent: Mapping[MetricKey, float], beyond: float) -> str:
         """Say what the motion keeps and its table does not, which is straight between samples."""

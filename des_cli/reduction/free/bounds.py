@@ -19,6 +19,7 @@ from des_cli.model.metric import (
     UNFELT_ANGULAR_ACCELERATION,
     Budget,
 )
+from des_cli.model.sides import largest_of
 from des_cli.reduction.free.local_bounds import (
     AttitudeBound,
     ComponentBound,
@@ -44,8 +45,8 @@ def point_bound(task: FreeTask, times: Floats, angle: Floats, budget: Budget) ->
         return _attitude_bound(task, times, angle, budget.most)
     if budget.metric != ANGULAR_ACCELERATION_PEAK_RATIO:
         raise ValueError(f"{budget.metric} is no bound at a point")
-    peak = np.max(np.linalg.norm(task.requested().seat_angular_acceleration, axis=-1))
-    return NormBound("acceleration", budget.most * max(float(peak), UNFELT_ANGULAR_ACCELERATION))
+    peak = largest_of(task.requested().seat_angular_acceleration)
+    return NormBound("acceleration", budget.most * max(peak, UNFELT_ANGULAR_ACCELERATION))
 
 
 def _attitude_bound(task: FreeTask, times: Floats, angle: Floats, most_deg: float) -> AttitudeBound:

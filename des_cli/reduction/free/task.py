@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -56,6 +56,8 @@ class FreeTask:
         What of fidelity to the record is allowed, where it counts beside the reference.
     round_base : bool
         Whether the reference is the table of the executable base itself.
+    roughness : dict of float to bool
+        What `rough` has found of the response, by the step of a grid.
     """
 
     machine: Machine
@@ -69,6 +71,7 @@ class FreeTask:
     record: Record | None = None
     most: tuple[Budget, ...] = ()
     round_base: bool = False
+    roughness: dict[float, bool] = field(default_factory=dict, compare=False, repr=False)
 
     @classmethod
     def of(
@@ -98,7 +101,11 @@ class FreeTask:
 
     def rough(self, grid: SplineGrid) -> bool:
         """Return whether what is asked is faster than the knots of a grid."""
-        return not self.round_base and is_rough(self.requested(), self.reference.t, grid.step)
+        if self.round_base:
+            return False
+        if grid.step not in self.roughness:
+            self.roughness[grid.step] = is_rough(self.requested(), self.reference.t, grid.step)
+        return self.roughness[grid.step]
 
     @property
     def held(self) -> Record:
@@ -123,7 +130,7 @@ class FreeTask:
 
     def with_response(self) -> FreeTask:
         """Return the task with what it would evaluate for every grid."""
-        return replace(self, response=self.requested())
+        return replace(self, response=self.requested(), roughness={})
 
     @property
     def chain(self) -> Chain:
