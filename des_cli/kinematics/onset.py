@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from des_cli.model.arrays import Floats
-from des_cli.model.motion import PIECE
 
 WINDOW = 0.1
 """Time [s] over which a change of G counts as one onset. A G that steps, as it does where
 a joint's acceleration steps, has no derivative; over a fixed time its onset is a number
 that does not depend on the grid. Nobody tells a rise over a tenth of a second from a step."""
+
+BLOCK = 1024
+"""Samples whose windows are looked at together."""
 
 _SAME = 1e-6
 """Share of the window within which a sample is at its end: of samples that are a whole
@@ -20,10 +20,21 @@ fraction of it apart, rounding of their times is not to say whether a jump count
 
 
 def largest_onset(t: Floats, sides: Floats) -> Floats:
-    """Return the largest onset of each component, (m,); see `onsets`."""
-    largest = np.zeros(sides.shape[2])
-    for _, onset in _blocks(t, sides):
-        np.maximum(largest, np.max(onset, axis=0, initial=0.0), out=largest)
+    """Return the largest onset of each component, (m,); see `onsets`.
+
+    Of a long motion most windows need no look: within a block of samples, and where its
+    windows end, a component stays between two values, and changes by no more.
+    """
+    blocks, bounds = _bounds(t, sides)
+    largest, seen = np.zeros(sides.shape[2]), np.zeros(len(blocks), dtype=bool)
+    for component, bound in enumerate(bounds.T):
+        for at in np.argsort(-bound):
+            if bound[at] <= largest[component]:
+                break
+            if not seen[at]:
+                seen[at] = True
+                _, onset = _changes(t, sides, *blocks[at])
+                largest = np.maximum(largest, np.max(onset, axis=0, initial=0.0))
     return largest
 
 
@@ -46,32 +57,63 @@ def onsets(t: Floats, sides: Floats) -> tuple[Floats, Floats]:
     onset : (m, k) array
         Magnitudes, in the unit of ``sides`` per second.
     """
-    begin, onset = (np.concatenate(each) for each in zip(*_blocks(t, sides), strict=True))
+    found = [_changes(t, sides, *block) for block in _blocks(t)]
+    begin, onset = (np.concatenate(each) for each in zip(*found, strict=True))
     order = np.argsort(begin, kind="stable")
     return begin[order], onset[order].T
 
 
-def _blocks(t: Floats, sides: Floats) -> Iterator[tuple[Floats, Floats]]:
-    """Yield first times (k,) and changes per second (k, m) of windows, block by block.
+def _blocks(t: Floats) -> list[tuple[float, slice]]:
+    """Return what windows there are: their times from samples on, or back, and which samples."""
+    window = min(WINDOW, float(t[-1] - t[0]))
+    return [
+        (shift, slice(first, min(first + BLOCK, len(t))))
+        for shift in (window, -window)
+        for first in range(0, len(t), BLOCK)
+    ]
+
+
+def _changes(t: Floats, sides: Floats, shift: float, samples: slice) -> tuple[Floats, Floats]:
+    """Return first times (k,) and changes per second (k, m) of windows.
 
     The difference of two broken lines is largest where one of them has its corner: before
     a sample, or after it, and a window that lies a little earlier or later has both of its
     ends there.
     """
-    window = min(WINDOW, float(t[-1] - t[0]))
-    for shift in (window, -window):
-        for first in range(0, len(t), PIECE):
-            here = t[first : first + PIECE]
-            there = _at_samples(here + shift, t, _SAME * window)
-            inside = (there >= t[0]) & (there <= t[-1])
-            here, there = here[inside], there[inside]
-            changes = [
-                np.abs(one - other)
-                for one, other in zip(
-                    _limits(t, sides, there), _limits(t, sides, here), strict=True
-                )
-            ]
-            yield np.minimum(here, there), np.maximum(*changes) / window
+    window, here = abs(shift), t[samples]
+    there = _at_samples(here + shift, t, _SAME * window)
+    inside = (there >= t[0]) & (there <= t[-1])
+    here, there = here[inside], there[inside]
+    ends = zip(_limits(t, sides, there), _limits(t, sides, here), strict=True)
+    changes = [np.abs(one - other) for one, other in ends]
+    return np.minimum(here, there), np.maximum(*changes) / window
+
+
+def _bounds(t: Floats, sides: Floats) -> tuple[list[tuple[float, slice]], Floats]:
+    """Return the blocks, and what no change per second in them exceeds, (b, m)."""
+    edges = np.arange(0, len(sides), BLOCK)
+    values = sides.reshape(-1, sides.shape[2])
+    least, most = (pick.reduceat(values, 2 * edges, axis=0) for pick in (np.minimum, np.maximum))
+    blocks = _blocks(t)
+    bounds = np.empty((len(blocks), sides.shape[2]))
+    for bound, (shift, samples) in zip(bounds, blocks, strict=True):
+        near = _SAME * abs(shift)
+        there = t[samples][[0, -1]] + shift + np.array([-near, near])
+        # With the intervals beside, whose ends are the other sides of the samples.
+        first, last = np.searchsorted(t, there).tolist()
+        spans = (samples.start - 1, samples.stop), (first - 2, last + 1)
+        (low, high), (other_low, other_high) = (
+            (np.min(least[part], axis=0), np.max(most[part], axis=0))
+            for part in (_blocks_of(*span, len(sides)) for span in spans)
+        )
+        bound[:] = np.maximum(high - other_low, other_high - low) / abs(shift)
+    return blocks, np.where(np.isnan(bounds), np.inf, bounds)
+
+
+def _blocks_of(first: int, last: int, intervals: int) -> slice:
+    """Return the blocks that hold the intervals first to last, those that there are."""
+    begin, end = (min(max(each, 0), intervals - 1) // BLOCK for each in (first, last))
+    return slice(begin, end + 1)
 
 
 def _limits(t: Floats, sides: Floats, times: Floats) -> tuple[Floats, Floats]:

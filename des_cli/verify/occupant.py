@@ -10,13 +10,20 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import OccupantBounds
 from des_cli.model.motion import Motion
 from des_cli.model.run import Check
-from des_cli.verify.felt import CHUNK, Felt
+from des_cli.verify.felt import Felt
 
 WINDOW = 0.1
 """Time [s] over which a change of G is an onset; see the nomenclature."""
 
 MEETS = 1e-6
 """Share of the window within which its other end meets a sample, whatever rounding says."""
+
+TOGETHER = 1024
+"""Neighbouring states whose windows are looked at together."""
+
+Window = tuple[int, float, int, int]
+"""Windows of neighbouring states: 0 of starts or 1 of ends of intervals, the time from there
+to their other ends [s], and the first interval and the one after the last."""
 
 OCCUPANT_TOLERANCE = 1e-9
 """Excess over a bound that rounding alone may make, relative to the bound or to one."""
@@ -85,42 +92,86 @@ def steepness(bounds: OccupantBounds, motion: Motion, felt: Felt) -> Floats:
 
 
 def largest_onsets(motion: Motion, felt: Felt) -> Floats:
-    """Return the largest change of each component of G over ``WINDOW``, (3,) [g/s]."""
-    largest = np.zeros(len(felt.g))
-    for _, onset in _onset_blocks(motion, felt):
-        np.maximum(largest, np.max(onset, axis=1), out=largest)
+    """Return the largest change of each component of G over ``WINDOW``, (3,) [g/s].
+
+    Looked for where it can be: from states whose G, and the G where their windows end, are
+    so far apart that none looked at before changes as much.
+    """
+    states, most = _reach(motion, felt.g)
+    largest, looked = np.zeros(len(felt.g)), set[int]()
+    for component in range(len(felt.g)):
+        for at in np.argsort(-most[:, component]).tolist():
+            if most[at, component] <= largest[component]:
+                break
+            if at not in looked:
+                looked.add(at)
+                change = _onset_at(motion, felt.g, *states[at])
+                largest = np.maximum(largest, np.max(change, axis=1))
     return largest
 
 
 def _onset(motion: Motion, felt: Felt) -> Floats:
     """Return the change of G over ``WINDOW`` that begins or ends at each state, (3, m) [g/s]."""
-    onset = np.zeros_like(felt.g)
-    for states, change in _onset_blocks(motion, felt):
-        np.maximum(onset[:, states], change, out=onset[:, states])
+    onset, count = np.zeros_like(felt.g), len(motion.step)
+    for side, shift, first, last in _windows(motion):
+        here = onset[:, side * count + first : side * count + last]
+        np.maximum(here, _onset_at(motion, felt.g, side, shift, first, last), out=here)
     return onset
 
 
-def _onset_blocks(motion: Motion, felt: Felt) -> Iterator[tuple[slice, Floats]]:
-    """Yield states with the change of G over a window that has them at one of its ends, (3, k).
+def _windows(motion: Motion) -> list[Window]:
+    """Return all windows that there are, those of neighbouring states together."""
+    t, count = motion.t, len(motion.step)
+    window = min(WINDOW, float(t[-1] - t[0]))
+    return [
+        (side, shift, first, min(first + TOGETHER, count))
+        for first in range(0, count, TOGETHER)
+        for side in (0, 1)
+        for shift in (window, -window)
+    ]
+
+
+def _onset_at(motion: Motion, g: Floats, side: int, shift: float, first: int, last: int) -> Floats:
+    """Return the change of G over a window that has states at one of its ends, (3, k) [g/s].
 
     Between the states G is a broken line that may jump at the samples; its change over a
     fixed time is largest where the time begins or ends at a corner. A motion that is not
     longer than ``WINDOW`` is one window. A window from just after a sample ends just after
     what is there, and one from just before a sample just before it.
     """
+    t, count, window = motion.t, len(motion.step), abs(shift)
+    there = t[first + side : last + side] + shift
+    after = np.clip(np.searchsorted(t, there), 1, count)
+    sample = np.where(there - t[after - 1] < t[after] - there, t[after - 1], t[after])
+    there = np.where(np.abs(there - sample) <= MEETS * window, sample, there)
+    inside = (there >= t[0]) & (there <= t[-1])
+    here = g[:, side * count + first : side * count + last]
+    change = np.abs(_beside(t, g, there, side) - here) / window
+    return np.where(inside, change, 0.0)
+
+
+def _reach(motion: Motion, g: Floats) -> tuple[list[Window], Floats]:
+    """Return the windows, and by how much G changes over none of some together, (w, 3) [g/s]."""
     t, count = motion.t, len(motion.step)
-    window = min(WINDOW, float(t[-1] - t[0]))
-    middles = 0.5 * (t[1:] + t[:-1])
-    for first in range(0, count, CHUNK):
-        last = min(first + CHUNK, count)
-        for side, shift in ((0, window), (0, -window), (1, window), (1, -window)):
-            there = t[first + side : last + side] + shift
-            sample = t[np.searchsorted(middles, there)]
-            there = np.where(np.abs(there - sample) <= MEETS * window, sample, there)
-            inside = (there >= t[0]) & (there <= t[-1])
-            states = slice(side * count + first, side * count + last)
-            change = np.abs(_beside(t, felt.g, there, side) - felt.g[:, states]) / window
-            yield states, np.where(inside, change, 0.0)
+    starts = np.arange(0, count, TOGETHER)
+    both = g[:, :count], g[:, count:]
+    low = np.min([np.minimum.reduceat(each, starts, axis=1) for each in both], axis=0)
+    high = np.max([np.maximum.reduceat(each, starts, axis=1) for each in both], axis=0)
+    windows = _windows(motion)
+    most = np.empty((len(windows), len(g)))
+    for at, (side, shift, first, last) in enumerate(windows):
+        slack = MEETS * abs(shift)
+        ends = t[first + side] + shift - slack, t[last + side - 1] + shift + slack
+        # One interval more on either side: a time on a sample is in both beside it.
+        begin, end = np.searchsorted(t, ends).tolist()
+        begin, end = (min(max(each, 0), count - 1) for each in (begin - 2, end + 1))
+        there = slice(begin // TOGETHER, end // TOGETHER + 1)
+        here = first // TOGETHER
+        up = np.max(high[:, there], axis=1) - low[:, here]
+        down = high[:, here] - np.min(low[:, there], axis=1)
+        most[at] = np.maximum(up, down) / abs(shift)
+    # What is no number has to be looked at.
+    return windows, np.where(np.isnan(most), np.inf, most)
 
 
 def _beside(t: Floats, g: Floats, times: Floats, side: int) -> Floats:

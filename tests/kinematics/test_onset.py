@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from des_cli.kinematics.onset import WINDOW, largest_onset
+from des_cli.kinematics.onset import WINDOW, largest_onset, onsets
 
 
 def sides_of(values):
@@ -60,3 +60,24 @@ def test_rounding_of_times_does_not_say_which_jumps_count(step):
     for start in (0.0, 0.1, 1.0 / 3.0, 17.3, 1234.567):
         t = start + step * np.arange(count + 1)
         assert largest_onset(t, sides) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("length", [1, 3, 50, 2000])
+def test_what_needs_no_look_is_not_the_largest(length, monkeypatch):
+    """The largest of all windows, whatever blocks of them are passed over."""
+    monkeypatch.setattr("des_cli.kinematics.onset.BLOCK", length)
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        t = np.cumsum(rng.choice([0.001, 0.01, 0.04], 150))
+        jumps = rng.normal(size=(149, 2, 3)) * rng.choice([0.0, 0.1, 1.0], (149, 1, 1))
+        sides = np.sin(3.0 * t)[:-1, None, None] + jumps
+        begin, onset = onsets(t, sides)
+        assert np.all(np.diff(begin) >= 0.0)
+        np.testing.assert_array_equal(largest_onset(t, sides), onset.max(axis=1))
+
+
+def test_a_value_that_is_no_number_is_no_onset():
+    t = np.linspace(0.0, 10.0, 5001)
+    sides = np.zeros((5000, 2, 2))
+    sides[4000, 0, 1] = np.nan
+    assert np.isnan(largest_onset(t, sides)[1])

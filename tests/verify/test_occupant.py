@@ -15,8 +15,8 @@ from des_cli.model.arrays import Floats
 from des_cli.model.machine import OccupantBounds, Seat
 from des_cli.model.machines import DES
 from des_cli.model.motion import Motion
-from des_cli.verify.felt import CHUNK, Attitudes, Felt, SeatChain
-from des_cli.verify.occupant import check_occupant, excesses, largest_onsets, steepness
+from des_cli.verify.felt import Attitudes, Felt, SeatChain
+from des_cli.verify.occupant import TOGETHER, check_occupant, excesses, largest_onsets, steepness
 from tests.support.claims import failing, values_of
 from tests.support.free_case import Case, with_rates
 
@@ -226,8 +226,26 @@ def test_onset_and_angular_acceleration_of_an_optimum_beyond_their_bounds(case: 
 def test_the_onset_of_a_motion_longer_than_what_is_measured_at_once() -> None:
     """By the program's own measure, on uneven steps with a jump at every sample."""
     draw = np.random.default_rng(9)
-    t = np.cumsum(draw.uniform(0.5e-3, 1.5e-3, 2 * CHUNK + 5))
+    t = np.cumsum(draw.uniform(0.5e-3, 1.5e-3, 2 * TOGETHER + 5))
     sides = np.sin(7.0 * t)[:-1, None, None] + 0.01 * draw.normal(size=(len(t) - 1, 2, 3))
     felt = felt_of(g=np.concatenate([sides[:, 0], sides[:, 1]]).T)
     found = largest_onsets(table(t), felt)
     np.testing.assert_allclose(found, largest_onset(t, sides), rtol=1e-12)
+
+
+@pytest.mark.parametrize("together", [1, 3, 50])
+def test_where_the_largest_onset_is_looked_for_is_where_it_is(
+    together: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The largest of all states, of records that jump and that do not."""
+    monkeypatch.setattr("des_cli.verify.occupant.TOGETHER", together)
+    for seed in range(8):
+        draw = np.random.default_rng(seed)
+        t = np.cumsum(draw.choice([0.001, 0.01, 0.04], 150))
+        jumps = draw.normal(size=(3, 298)) * draw.choice([0.0, 0.1, 1.0], (1, 298))
+        g = np.sin(3.0 * np.concatenate([t[:-1], t[1:]])) + jumps
+        ((_, _, excess),) = excesses(OccupantBounds(g_onset=1.0), table(t), felt_of(g=g))
+        found = largest_onsets(table(t), felt_of(g=g))
+        assert np.max(found) - 1.0 == np.max(excess)
+        sides = np.stack([g[:, :149].T, g[:, 149:].T], axis=1)
+        np.testing.assert_allclose(found, largest_onset(t, sides), rtol=1e-12)

@@ -75,7 +75,7 @@ def test_what_is_told_of_a_long_motion_is_found_in_pieces(
 ) -> None:
     assert claim.told is not None
     whole = [check.value for check in check_told(claim, claim.told)]
-    for module in ("model.motion.PIECE", "verify.integrals.CHUNK", "verify.occupant.CHUNK"):
+    for module in ("model.motion.PIECE", "verify.integrals.CHUNK", "verify.occupant.TOGETHER"):
         monkeypatch.setattr(f"des_cli.{module}", 7)
     found = [check.value for check in check_told(claim, claim.told)]
     assert found == pytest.approx(whole, abs=1e-11)
