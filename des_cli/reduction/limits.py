@@ -51,7 +51,16 @@ class Peaks:
 
 
 def measure_peaks(motion: Motion) -> Peaks:
-    """Return the largest magnitudes of a motion."""
+    """Return the largest magnitudes of a motion; asked again, what was found the first time."""
+    if motion not in _peaks:
+        _peaks[motion] = _measured(motion)
+    return _peaks[motion]
+
+
+_peaks: WeakKeyDictionary[Motion, Peaks] = WeakKeyDictionary()
+
+
+def _measured(motion: Motion) -> Peaks:
     measures = (angle_magnitude, _rate, acceleration_magnitude, jerk_magnitude, _rate_step)
     peaks = np.zeros((len(measures), len(JOINTS)))
     for piece in motion.pieces():
@@ -171,25 +180,26 @@ def find_violations(machine: Machine, motion: Motion, which: Which) -> tuple[Vio
     Returns
     -------
     tuple of Violation
-        Joint by joint. Asked again for the same motion, as long as that is there, they are
-        not found anew: several steps of a reduction ask.
+        Joint by joint.
     """
-    known = _known.setdefault(motion, {})
-    key = (machine.limits, which)
-    if key not in known:
-        found: dict[tuple[int, int], Violation] = {}
-        for piece in motion.pieces():
-            for place, violation in _broken(machine.limits, piece, which):
-                before = found.get(place, violation)
-                peak = max(before.peak, violation.peak)
-                found[place] = replace(violation, peak=peak, from_s=before.from_s)
-        known[key] = tuple(found[place] for place in sorted(found))
-    return known[key]
+    if _inside(machine.limits, measure_peaks(motion)):
+        return ()
+    found: dict[tuple[int, int], Violation] = {}
+    for piece in motion.pieces():
+        for place, violation in _broken(machine.limits, piece, which):
+            before = found.get(place, violation)
+            peak = max(before.peak, violation.peak)
+            found[place] = replace(violation, peak=peak, from_s=before.from_s)
+    return tuple(found[place] for place in sorted(found))
 
 
-_known: WeakKeyDictionary[
-    Motion, dict[tuple[tuple[JointLimits, ...], Which], tuple[Violation, ...]]
-] = WeakKeyDictionary()
+def _inside(limits: tuple[JointLimits, ...], peaks: Peaks) -> bool:
+    """Return whether no peak is beyond its limit; what is no number is not inside."""
+    kept = peaks.rate_step <= STEP_TOLERANCE
+    for quantity in ("angle", "rate", "acceleration", "jerk"):
+        bound = np.array([getattr(limit, quantity) for limit in limits])
+        kept &= getattr(peaks, quantity) <= bound * (1.0 + TOLERANCE)
+    return bool(np.all(kept))
 
 
 def _broken(

@@ -290,10 +290,19 @@ class SeatChain:
         """
         constants, signs = _constants(self.machine.rows, self.seat)
         carried = np.zeros((3, 4, out.shape[2]))
-        carried[2, FORCE] = self.machine.gravity
-        for joint, (turn, sign) in enumerate(zip(turns, signs, strict=True)):
+        # What the first joint stands on does not move.
+        reaction = self.machine.gravity * constants[0][2, :3]
+        carried[:, FORCE] = reaction[:, None]
+        if np.any(reaction[:2]):
+            cosine, sine = turns[0]
+            carried[0, FORCE] = cosine * reaction[0] + sine * reaction[1]
+            carried[1, FORCE] = cosine * reaction[1] - sine * reaction[0]
+        carried[2, RATE] = signs[0] * rate[0]
+        carried[2, TURNING] = signs[0] * acceleration[0]
+        for joint in range(1, len(JOINTS)):
             carried = _placed(constants[joint], carried)
-            carried = _turned(carried, turn, sign * rate[joint], sign * acceleration[joint])
+            moving = signs[joint] * rate[joint], signs[joint] * acceleration[joint]
+            carried = _turned(carried, turns[joint], *moving)
         carried = _placed(constants[-1], carried)
         out[:] = carried.swapaxes(0, 1)
         out[FORCE] /= STANDARD_GRAVITY_M_S2
