@@ -70,7 +70,7 @@ def unnamed(output: Output, result: JobResult) -> tuple[str, ...]:
 
 
 def _table_stands(output: Output, target: Path) -> bool:
-    from des_cli.runs_out.run_folder import COMMANDS
+    from des_cli.runs_out.manifest import COMMANDS
 
     if output.one_file:
         return target.is_file()

@@ -279,7 +279,7 @@ def _metrics_of_run(folder: Path, profile: Profile) -> dict[str, Any] | None:
     """Return the metrics of a finished run of this very profile, None where there is none."""
     from des_cli.results.reading import read_metrics
     from des_cli.runs_out.manifest import is_run
-    from des_cli.runs_out.run_folder import read_run
+    from des_cli.runs_out.stored_run import read_run
 
     if not is_run(folder):
         return None

@@ -67,7 +67,8 @@ def fulfil(order: Order) -> Delivery:
 
     def encode(run: Run) -> None:
         from des_cli.release.gate import require_table
-        from des_cli.runs_out.run_folder import COMMANDS, encode_run
+        from des_cli.runs_out.manifest import COMMANDS
+        from des_cli.runs_out.run_folder import encode_run
 
         outputs.update(encode_run(run, plots=job.output.plots))
         require_table(run, outputs[COMMANDS], fail_on=job.fail_on)

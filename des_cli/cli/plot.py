@@ -78,7 +78,7 @@ def plot(console: Console, run: str, name: str, out: str | None, form: str | Non
 
     from des_cli.results.reading import read_metrics
     from des_cli.runs_out.atomic import require_file, write_file
-    from des_cli.runs_out.run_folder import read_run
+    from des_cli.runs_out.stored_run import read_run
     from des_cli.show.plots.figures import draw_figure
 
     if target != STANDARD_STREAM:

@@ -65,7 +65,7 @@ def report(
 
 def _make_page(console: Console, runs: tuple[str, ...], out: str) -> None:
     from des_cli.runs_out.atomic import require_file, write_file
-    from des_cli.runs_out.run_folder import StoredRun, read_run
+    from des_cli.runs_out.stored_run import StoredRun, read_run
     from des_cli.show.page.page import render_report
 
     if out != STANDARD_STREAM:

@@ -21,8 +21,8 @@ from des_cli.model.notice import Notice
 from des_cli.model.run import Check
 from des_cli.profiles_in.machine_yaml import parse_machine
 from des_cli.results.reading import read_metrics
-from des_cli.runs_out.manifest import MANIFEST, is_sealed
-from des_cli.runs_out.run_folder import METRICS, StoredRun, read_run
+from des_cli.runs_out.manifest import MANIFEST, METRICS, is_sealed
+from des_cli.runs_out.stored_run import StoredRun, read_run
 from des_cli.runs_out.table_reading import parse_command_table
 from des_cli.verify.harm import find_harms, find_start, start_offsets
 from des_cli.verify.table import check_against, check_ride, check_rows, check_times

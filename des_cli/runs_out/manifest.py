@@ -28,6 +28,11 @@ UNSEALED_FORMAT = "des-coriolis/run/1"
 
 
 MANIFEST = "manifest.json"
+COMMANDS = "commands.csv"
+TRAJECTORY = "trajectory.parquet"
+PROFILE = "profile.yaml"
+METRICS = "metrics.json"
+"""Names of the outputs of a run, as seen from its folder."""
 
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 _SEAL = re.compile(rb',\n  "sha256": "([0-9a-f]{64})"\n\}\n\Z')

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from des_cli.runs_out.run_folder import read_run
+from des_cli.runs_out.stored_run import read_run
 from tests.cli.conftest import SMALL
 from tests.support.processes import ENDINGS, MARK, marked, start
 from tests.support.ready_command import WORDS, ReadyCommand

@@ -16,7 +16,8 @@ from des_cli.model.run import Run
 from des_cli.runs_out import run_folder
 from des_cli.runs_out.atomic import write_file
 from des_cli.runs_out.manifest import is_run
-from des_cli.runs_out.run_folder import read_run, write_run
+from des_cli.runs_out.run_folder import write_run
+from des_cli.runs_out.stored_run import read_run
 from tests.support.fuse import Fuse
 from tests.support.run_files import tree
 

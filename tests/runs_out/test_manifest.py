@@ -25,7 +25,8 @@ from des_cli.runs_out.manifest import (
     parse_object,
     read_manifest,
 )
-from des_cli.runs_out.run_folder import read_run, write_run
+from des_cli.runs_out.run_folder import write_run
+from des_cli.runs_out.stored_run import read_run
 from tests.support.run_files import entry, rewrite, tree
 
 MakeRun = Callable[..., Run]

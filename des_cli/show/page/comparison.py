@@ -20,7 +20,7 @@ from des_cli.model.metrics import ConstantBaseline, Metrics, SweepBaseline, When
 from des_cli.results.budgets import spent_budgets
 from des_cli.results.ends import end_words
 from des_cli.results.worse import FeltNumber, worse_numbers
-from des_cli.runs_out.run_folder import StoredRun
+from des_cli.runs_out.stored_run import StoredRun
 from des_cli.show.plots.standing import status_words
 from des_cli.show.words import PAGE, text_of
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import jinja2
 
 from des_cli.results.reading import read_metrics
-from des_cli.runs_out.run_folder import StoredRun
+from des_cli.runs_out.stored_run import StoredRun
 from des_cli.show.page.comparison import comparison_rows, labels
 from des_cli.show.page.section import run_section
 

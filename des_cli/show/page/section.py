@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from des_cli.model.metric import ATTITUDE_ERROR, FACTOR_DEVIATION
 from des_cli.model.metrics import Metrics
-from des_cli.runs_out.run_folder import StoredRun
+from des_cli.runs_out.stored_run import StoredRun
 from des_cli.show.page.comparison import Cell
 from des_cli.show.page.summary import summary_sentences
 from des_cli.show.page.tables import coriolis_rows, joint_rows, limit_rows, seat_rows, turning_rows

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from des_cli.model.run import Run
-from des_cli.runs_out.run_folder import StoredRun
+from des_cli.runs_out.stored_run import StoredRun
 from des_cli.runs_out.tables import trajectory_columns
 
 MakeRun = Callable[..., Run]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from des_cli.runs_out.run_folder import StoredRun
+from des_cli.runs_out.stored_run import StoredRun
 from des_cli.show.page.page import render_report
 from tests.support.page import Page, set_at
 

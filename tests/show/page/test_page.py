@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from des_cli.runs_out.run_folder import StoredRun
+from des_cli.runs_out.stored_run import StoredRun
 from des_cli.show.page.page import NOMENCLATURE, render_report
 from des_cli.show.plots import CAPTIONS
 from tests.support.page import Page, set_at
