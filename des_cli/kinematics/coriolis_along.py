@@ -7,6 +7,7 @@ both, and only the rates' products differ.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -55,6 +56,8 @@ def coriolis_blocks(
 def weighted_square(chain: Chain, motion: Motion, axes: Axes, r1: Floats) -> float:
     """Return ``int c' R1 c dt`` of a motion, by the trapezoidal rule [rad^2/s^3].
 
+    Asked again for the same motion, as long as that is there, this returns what it found.
+
     Parameters
     ----------
     chain : Chain
@@ -62,11 +65,18 @@ def weighted_square(chain: Chain, motion: Motion, axes: Axes, r1: Floats) -> flo
     axes : {"report", "seat"}
     r1 : (3, 3) array
     """
-    square = np.empty(len(motion.t) - 1)
-    for part, (start, end) in coriolis_blocks(chain, motion, axes):
-        square[part] = np.sum((r1 @ start) * start, axis=0)
-        square[part] += np.sum((r1 @ end) * end, axis=0)
-    return integral_of(motion.step, square)
+    known = _squares.setdefault(motion, {})
+    key = (chain, axes, r1.tobytes())
+    if key not in known:
+        square = np.empty(len(motion.t) - 1)
+        for part, (start, end) in coriolis_blocks(chain, motion, axes):
+            square[part] = np.sum((r1 @ start) * start, axis=0)
+            square[part] += np.sum((r1 @ end) * end, axis=0)
+        known[key] = integral_of(motion.step, square)
+    return known[key]
+
+
+_squares: WeakKeyDictionary[Motion, dict[tuple[Chain, Axes, bytes], float]] = WeakKeyDictionary()
 
 
 def coriolis_slope(chain: Chain, motion: Motion, axes: Axes, r1: Floats) -> Floats:

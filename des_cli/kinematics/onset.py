@@ -83,10 +83,14 @@ def _changes(t: Floats, sides: Floats, shift: float, samples: slice) -> tuple[Fl
     window, here = abs(shift), t[samples]
     there = _at_samples(here + shift, t, _SAME * window)
     inside = (there >= t[0]) & (there <= t[-1])
+    at = np.flatnonzero(inside) + samples.start
     here, there = here[inside], there[inside]
-    ends = zip(_limits(t, sides, there), _limits(t, sides, here), strict=True)
-    changes = [np.abs(one - other) for one, other in ends]
-    return np.minimum(here, there), np.maximum(*changes) / window
+    after, before = _limits(t, sides, there)
+    # The ends of the record have one side.
+    after -= np.where((at == len(sides))[:, None], sides[-1, 1], sides[at - (at == len(sides)), 0])
+    before -= np.where((at == 0)[:, None], sides[0, 0], sides[at - 1, 1])
+    change = np.maximum(np.abs(after, out=after), np.abs(before, out=before))
+    return np.minimum(here, there), change / window
 
 
 def _bounds(t: Floats, sides: Floats) -> tuple[list[tuple[float, slice]], Floats]:

@@ -148,9 +148,19 @@ def measure(claim: Claim, metric: str, felt: Felt) -> float:
         return float(np.max(at_states(claim, metric, felt)))
     if metric == FACTOR_DEVIATION:
         return mean_square_one_minus_p(claim, claim.solution.control)
-    lost = integral(claim, partial(integrand, metric), felt, claim.before)
-    square = lost / size(claim, metric)
+    square = _lost(claim, metric, felt) / size(claim, metric)
     return square if INTEGRALS[metric].squared else float(np.sqrt(square))
+
+
+def _lost(claim: Claim, metric: str, felt: Felt) -> float:
+    """Return the integral of a metric."""
+    if felt is not claim.after:
+        return integral(claim, partial(integrand, metric), felt, claim.before)
+    kind = INTEGRALS[metric]
+    key = (kind.field, "deviation" if kind.deviation else "after")
+    if key not in claim.sums:
+        claim.sums[key] = integral(claim, partial(integrand, metric), felt, claim.before)
+    return claim.sums[key]
 
 
 def integrand(metric: str, felt: Felt, before: Felt) -> Floats:
@@ -173,7 +183,10 @@ def size(claim: Claim, metric: str) -> float:
         return np.asarray(np.einsum("im,im->m", values, values))
 
     least = NOTHING if kind.deviation else UNFELT_ANGULAR_ACCELERATION**2 * claim.duration
-    return max(integral(claim, square, claim.before, claim.before), least)
+    key = (kind.field, "before")
+    if key not in claim.sums:
+        claim.sums[key] = integral(claim, square, claim.before, claim.before)
+    return max(claim.sums[key], least)
 
 
 def at_states(claim: Claim, metric: str, felt: Felt) -> Floats:

@@ -112,6 +112,11 @@ class Claim:
         return self.reduction.limits == "enforce"
 
     @cached_property
+    def sums(self) -> dict[tuple[str, str], float]:
+        """Integrals that were taken already, by what they are of: several metrics share them."""
+        return {}
+
+    @cached_property
     def rough(self) -> bool:
         """Whether what was asked for is not smooth from sample to sample."""
         count, rate = len(self.requested.step), self.before.rate
