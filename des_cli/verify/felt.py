@@ -5,9 +5,10 @@ nothing else: no chain, no Jacobian, no joint axes. From the ground to the seat,
 frame, four vectors are carried along the axes of each frame: its angular velocity W, how
 that changes at constant joint rates (the cross-coupling), how it changes in all, and the
 acceleration of its origin, which gravity's reaction g z0 is added to at the ground. A
-constant transform of rotation R and shift p leaves the first three, but for the axes::
+constant transform of rotation R and shift p leaves the first three but for their axes, and
+makes of the acceleration a::
 
-    a'' = R^T (a + dW/dt x p + W x (W x p))
+    R^T (a + dW/dt x p + W x (W x p))
 
 and a joint that turns about its z by an angle theta adds its own rate and acceleration,
 and what the rate of all before it makes of its axis, W x z theta'. At the seat the last is
