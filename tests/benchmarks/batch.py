@@ -50,7 +50,7 @@ def _measure(home: Path, count: int) -> None:
         (home / name).write_text(PROFILE.format(slower=0.5 + 0.2 * k / count))
     run(_reduce([files[0]], "first"), home)  # compiles, and fills the caches
     batch = run(_reduce(files, "batch"), home)
-    loop = [run(_reduce([name], f"loop/{name}"), home) for name in files[:LOOP]]
+    loop = [run(_reduce([name], f"loop/{Path(name).stem}"), home) for name in files[:LOOP]]
     same = run(_reduce(files[:LOOP], "ten"), home)
     few = max(count // 4, 1)
     batch_few = run(_reduce(files[:few], "batchfew"), home)
