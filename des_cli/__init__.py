@@ -4,10 +4,13 @@ The Python interface is two verbs::
 
     from des_cli import load_profile, reduce_profile
 
-    run = reduce_profile(load_profile("profiles/cobra.yaml"))
+    run = reduce_profile("cobra_felt", budget={"seat_g_rms_error_g": 0.02})
     run.metrics["coriolis"]["vector"]["reduction"]
+    run.commands, run.trajectory                # pandas
+    run.plot("felt")
+    run.save("runs/cobra_felt")
 
-Both are imported on first use, so that ``import des_cli`` costs nothing.
+All names are imported on first use, so that ``import des_cli`` costs nothing.
 """
 
 from __future__ import annotations
@@ -16,14 +19,19 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from des_cli.pipeline import reduce_profile
+    from des_cli.api.reduce import reduce_profile
+    from des_cli.api.run import Run
     from des_cli.profiles_in.load import load_profile
 
 __version__ = "0.1.0"
 
-__all__ = ["__version__", "load_profile", "reduce_profile"]
+__all__ = ["Run", "__version__", "load_profile", "reduce_profile"]
 
-_HOME = {"load_profile": "des_cli.profiles_in.load", "reduce_profile": "des_cli.pipeline"}
+_HOME = {
+    "Run": "des_cli.api.run",
+    "load_profile": "des_cli.profiles_in.load",
+    "reduce_profile": "des_cli.api.reduce",
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -24,9 +24,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
-from des_cli import load_profile, reduce_profile
 from des_cli.model.arrays import Floats
 from des_cli.model.run import Run
+from des_cli.pipeline import reduce_profile
+from des_cli.profiles_in.load import load_profile
 from des_cli.runs_out.tables import trajectory_columns
 from des_cli.show.plots.canvas import draw, note, png, sheet, style
 from des_cli.show.plots.pens import BEFORE, BLUE, GREEN, GREY, INK, VERMILION, Pen

@@ -12,7 +12,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from des_cli import load_profile, reduce_profile
 from des_cli.kinematics.chain import chain_of, joint_axes, linear_jacobian, seat_rotation, transform
 from des_cli.kinematics.commanded_motion import make_desired
 from des_cli.kinematics.coriolis import coriolis, coriolis_derivatives
@@ -21,6 +20,8 @@ from des_cli.kinematics.response import acceleration_parts
 from des_cli.model.machine import Seat
 from des_cli.model.machines import DES
 from des_cli.model.run import Run
+from des_cli.pipeline import reduce_profile
+from des_cli.profiles_in.load import load_profile
 from des_cli.study.closed_forms import (
     closed_form_coriolis,
     closed_form_transform,

@@ -20,7 +20,7 @@ LAYERS = (
     ("signals",),
     ("profiles_in", "runs_out", "show"),
     ("release",),
-    ("batch", "tradeoff", "feed"),
+    ("batch", "tradeoff", "feed", "api"),
     ("cli", "__main__"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}

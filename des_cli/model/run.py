@@ -121,7 +121,7 @@ class Check:
         return f"{said}; {self.cure}" if self.cure and not self.ok else said
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """A profile, its desired motion, the solution, and what both do to the seat.
 
@@ -160,6 +160,10 @@ class Run:
     checks: tuple[Check, ...]
     violations: tuple[Violation, ...]
     results: Metrics
+
+    def __repr__(self) -> str:
+        """Name it: its arrays would fill a book."""
+        return f"<Run {self.profile.name}: {self.solution.status}, {len(self.commands.t)} rows>"
 
     @cached_property
     def metrics(self) -> dict[str, Any]:

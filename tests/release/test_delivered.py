@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from des_cli import load_profile, reduce_profile
 from des_cli.errors import NotReleasedError
 from des_cli.model.notice import Notice
 from des_cli.model.run import Run
+from des_cli.pipeline import reduce_profile
+from des_cli.profiles_in.load import load_profile
 from des_cli.release.delivered import require_delivered
 from des_cli.runs_out.run_folder import write_run
 from tests.support.run_files import replace_file, rewrite

@@ -9,11 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from des_cli import load_profile, reduce_profile
 from des_cli.errors import NotReleasedError
 from des_cli.model.arrays import Floats
 from des_cli.model.motion import Motion
 from des_cli.model.run import Run
+from des_cli.pipeline import reduce_profile
+from des_cli.profiles_in.load import load_profile
 from des_cli.release.gate import check_table, require_table
 from des_cli.runs_out.table_reading import COLUMNS, parse_command_table
 from des_cli.runs_out.tables import TABLE_FORMATS, command_columns, encode_table

@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from des_cli import load_profile, reduce_profile
 from des_cli.errors import BrokenRunError, ExitCode, UnreadableError
 from des_cli.model.machine import Machine, Seat
 from des_cli.model.machines import DES
 from des_cli.model.run import Run
+from des_cli.pipeline import reduce_profile
+from des_cli.profiles_in.load import load_profile
 from des_cli.release.stored import Verdict, check_stored_run, check_stored_table
 from des_cli.runs_out.manifest import UNSEALED_FORMAT
 from des_cli.runs_out.run_folder import write_run

@@ -14,9 +14,10 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-from des_cli import load_profile, reduce_profile
 from des_cli.errors import DesError, ExitCode
+from des_cli.pipeline import reduce_profile
 from des_cli.profiles_in.builtin import builtin_profiles
+from des_cli.profiles_in.load import load_profile
 from des_cli.release.gate import require_table
 from des_cli.runs_out.tables import command_columns, encode_table
 
