@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 import click
 
+from des_cli.cli.command import GENERAL, option
 from des_cli.cli.console import Console
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -14,7 +15,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 def verbosity_options(command: F) -> F:
     """Add ``-q`` and ``-v``, on the group and on every command alike."""
-    quiet = click.option(
+    quiet = option(
+        GENERAL,
         "-q",
         "--quiet",
         is_flag=True,
@@ -22,7 +24,8 @@ def verbosity_options(command: F) -> F:
         callback=_on_quiet,
         help="Print only warnings and errors.",
     )
-    verbose = click.option(
+    verbose = option(
+        GENERAL,
         "-v",
         "--verbose",
         count=True,
@@ -35,7 +38,8 @@ def verbosity_options(command: F) -> F:
 
 def color_option(command: F) -> F:
     """Add ``--color``; without it, a terminal without NO_COLOR has colors."""
-    return click.option(
+    return option(
+        GENERAL,
         "--color",
         type=click.Choice(["auto", "always", "never"]),
         default="auto",

@@ -8,6 +8,7 @@ from typing import Any, TypeVar, cast
 
 import click
 
+from des_cli.cli.command import RECORD, option
 from des_cli.profiles_in.setting import Setting, value_of_option
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -32,7 +33,7 @@ def conditioning_options(command: F) -> F:
 
     added: Any = with_settings
     for key, metavar, text in reversed(_OPTIONS):
-        added = click.option(f"--{key.replace('_', '-')}", key, metavar=metavar, help=text)(added)
+        added = option(RECORD, f"--{key.replace('_', '-')}", key, metavar=metavar, help=text)(added)
     return cast(F, added)
 
 

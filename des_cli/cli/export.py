@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import click
 
 from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.command import MACHINE, OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
 from des_cli.cli.form_options import FormWords, form_of, form_options, hz_option
-from des_cli.cli.options import TABLE_FORMATS, fail_on_option
+from des_cli.cli.options import TABLE_FORMATS, fail_on_option, overwrite_option
 from des_cli.cli.outputs import files_held
-from des_cli.cli.source_options import machine_option, read_stdin
+from des_cli.cli.source_options import machine_option_below, read_stdin
 from des_cli.cli.state_options import in_si, state_options
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.targets import LARGEST, STANDING, check_target, tell_verdict
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
+    cls=Command,
     short_help="Write a run or a command table in the form of another program.",
     epilog="""\b
 Examples:
@@ -35,8 +37,9 @@ Examples:
 """,
 )
 @click.argument("target", metavar="RUN|TABLE")
-@click.option("-o", "--out", metavar="FILE|-", required=True, help="The file, or stdout.")
-@click.option(
+@option(OUTPUT, "-o", "--out", metavar="FILE|-", required=True, help="The file, or stdout.")
+@option(
+    OUTPUT,
     "-f",
     "--format",
     "table_format",
@@ -45,9 +48,9 @@ Examples:
 )
 @form_options
 @hz_option
-@click.option("--overwrite", is_flag=True, help="Replace a file that exists.")
-@machine_option
-@state_options(STANDING)
+@overwrite_option("Replace a file that exists.")
+@machine_option_below(MACHINE)
+@state_options(STANDING, MACHINE)
 @fail_on_option
 @verbosity_options
 @click.pass_obj

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import click
 
+from des_cli.cli.command import MACHINE, OUTPUT, PACE, Command, option
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
 from des_cli.cli.form_options import FormWords, line_options, lines_form
 from des_cli.cli.options import fail_on_option
-from des_cli.cli.source_options import machine_option, read_stdin
+from des_cli.cli.source_options import machine_option_below, read_stdin
 from des_cli.cli.state_options import in_si, state_options
 from des_cli.cli.stdout import write_data
 from des_cli.cli.targets import LARGEST, STANDING, check_target, tell_verdict
@@ -28,6 +29,7 @@ MOST_ROWS = 10_000_000
 
 
 @click.command(
+    cls=Command,
     short_help="Send the rows of a run or a command table, each at its time.",
     epilog="""\b
 Examples:
@@ -38,37 +40,43 @@ Examples:
 """,
 )
 @click.argument("target", metavar="RUN|TABLE")
-@click.option(
+@option(
+    PACE,
     "--hz",
     type=click.FloatRange(1.0, 1000.0),
+    metavar="RATE",
     default=100.0,
     show_default=True,
     help="Rows a second.",
 )
-@click.option(
+@option(
+    PACE,
     "--rate",
     type=click.FloatRange(0.01, 100.0),
+    metavar="RATE",
     default=1.0,
     show_default=True,
     help="Seconds of the table in a second: 0.5 plays at half the speed.",
 )
-@click.option(
+@option(
+    PACE,
     "--at-end",
     type=click.Choice(["ramp", "hold", "stop"]),
     default="ramp",
     show_default=True,
     help="After the last row: bring all joints to rest, repeat it, or end.",
 )
-@click.option(
+@option(
+    PACE,
     "--hold-s",
     type=click.FloatRange(0.0, min_open=True),
     metavar="SECONDS",
     help="End so long after the last row.  [default: hold until interrupted]",
 )
-@click.option("--dry-run", is_flag=True, help="Check all rows, and send none.")
+@option(OUTPUT, "--dry-run", is_flag=True, help="Check all rows, and send none.")
 @line_options
-@machine_option
-@state_options(STANDING)
+@machine_option_below(MACHINE)
+@state_options(STANDING, MACHINE)
 @fail_on_option
 @verbosity_options
 @click.pass_obj

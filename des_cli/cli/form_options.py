@@ -14,6 +14,7 @@ import click
 
 from des_cli.batch.job import TableFormat
 from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.command import ROWS, option
 from des_cli.cli.options import TABLE_FORMATS, existing_folder
 from des_cli.runs_out.forms import (
     COMMANDS,
@@ -103,9 +104,11 @@ def line_options(command: F) -> F:
 
 def hz_option(command: F) -> F:
     """Add ``--hz`` to a command that writes tables."""
-    return click.option(
+    return option(
+        ROWS,
         "--hz",
         type=click.FloatRange(1.0, 10_000.0),
+        metavar="RATE",
         help="Rows a second, between those of the table and inside the same limits.  "
         "[default: its own rows]",
     )(command)
@@ -189,23 +192,25 @@ def _form_options(presets: tuple[str, ...]) -> Callable[[F], F]:
             words = FormWords(preset, out_columns, out_separator, not no_header)
             return command(*args, words=words, **values)
 
-        preset = click.option(
-            "--preset", type=click.Choice(presets), help="The form that this program reads."
+        preset = option(
+            ROWS, "--preset", type=click.Choice(presets), help="The form that this program reads."
         )
-        columns = click.option(
+        columns = option(
+            ROWS,
             "--columns",
             "out_columns",
             metavar="NAME[=HEADER],...",
             callback=_read_columns,
             help="The columns of the rows, by quantity and unit: t_s,arm_rad_s,fork_deg=Fork.",
         )
-        separator = click.option(
+        separator = option(
+            ROWS,
             "--out-separator",
             metavar="SIGN",
             callback=_read_separator,
             help="What stands between them: ',', ';', '|', tab or space.",
         )
-        header = click.option("--no-header", is_flag=True, help="Write no names above the rows.")
+        header = option(ROWS, "--no-header", is_flag=True, help="Write no names above the rows.")
         return cast(F, preset(columns(separator(header(with_words)))))
 
     return add

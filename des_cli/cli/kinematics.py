@@ -10,6 +10,7 @@ import click
 
 from des_cli.batch.job import TableFormat
 from des_cli.batch.source import Source
+from des_cli.cli.command import OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.options import TABLE_FORMATS
 from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_of
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
+    cls=Command,
     short_help="Show the kinematics of a state, or of a profile's motion.",
     epilog="""\b
 Examples:
@@ -36,7 +38,8 @@ Examples:
 @state_options()
 @machine_option
 @setting_options
-@click.option(
+@option(
+    OUTPUT,
     "-f",
     "--format",
     "form",

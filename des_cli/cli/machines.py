@@ -6,12 +6,14 @@ import json
 
 import click
 
+from des_cli.cli.command import OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.options import text_or_json_option
 from des_cli.cli.stdout import write_data
 
 
 @click.command(
+    cls=Command,
     short_help="List the built-in machines, or print one.",
     epilog="""\b
 Examples:
@@ -22,7 +24,7 @@ Examples:
 )
 @click.argument("machine", metavar="[NAME|FILE]", required=False)
 @text_or_json_option("Text is a line a machine, or the YAML of one; json is an object a line.")
-@click.option("--full", is_flag=True, help="Print the Denavit-Hartenberg rows too.")
+@option(OUTPUT, "--full", is_flag=True, help="Print the Denavit-Hartenberg rows too.")
 @verbosity_options
 def machines(machine: str | None, form: str, full: bool) -> None:
     """List the built-in machines, or print one: what may be changed of it, as a file.

@@ -130,7 +130,9 @@ Example:
 )
 @verbosity_options
 @color_option
-@click.version_option(__version__, prog_name=PROGRAM, message="%(prog)s %(version)s")
+@click.version_option(
+    __version__, "-V", "--version", prog_name=PROGRAM, message="%(prog)s %(version)s"
+)
 def program() -> None:
     """Reduce the Coriolis cross-coupling that a pilot feels in a three-axis human centrifuge.
 

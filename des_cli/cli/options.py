@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 import click
 
+from des_cli.cli.command import BATCH, OUTPUT, REDUCTION, option
 from des_cli.model.metric import STUDY_METRIC, metric_named
 from des_cli.model.notice import HARMS
 from des_cli.profiles_in.setting import Setting, value_of_option
@@ -30,7 +31,8 @@ DEFAULT_RUNS = "runs"
 
 def text_or_json_option(text: str) -> Callable[[F], F]:
     """Add ``--format text|json`` to a command that answers in lines."""
-    return click.option(
+    return option(
+        OUTPUT,
         "-f",
         "--format",
         "form",
@@ -41,9 +43,28 @@ def text_or_json_option(text: str) -> Callable[[F], F]:
     )
 
 
+def overwrite_option(text: str) -> Callable[[F], F]:
+    """Return what adds ``--overwrite`` to a command that refuses what exists."""
+    return option(OUTPUT, "--overwrite", is_flag=True, help=text)
+
+
+def jobs_option(text: str) -> Callable[[F], F]:
+    """Return what adds ``--jobs`` to a command that does several things at a time."""
+    return option(
+        BATCH,
+        "--jobs",
+        type=click.IntRange(min=0),
+        metavar="N",
+        default=1,
+        show_default=True,
+        help=text,
+    )
+
+
 def fail_on_option(command: F) -> F:
     """Add ``--fail-on``, which comes to the command as a set of notices' names."""
-    return click.option(
+    return option(
+        OUTPUT,
         "--fail-on",
         metavar="NAME",
         multiple=True,
@@ -144,8 +165,10 @@ def reduction_options_without(*keys: str) -> Callable[[F], F]:
             if key in _REPEATABLE:
                 typed["multiple"] = True
                 text = f"{text.removesuffix('.')}; repeatable."
+            if isinstance(kind, click.IntRange):
+                typed["metavar"] = "N"
             name = f"--{key.replace('_', '-')}"
-            command = click.option(name, key, help=text, **typed)(command)
+            command = option(REDUCTION, name, key, help=text, **typed)(command)
         return command
 
     return add

@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, get_args
 import click
 
 from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.command import OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
+from des_cli.cli.options import overwrite_option
+from des_cli.cli.outputs import files_held
 from des_cli.cli.stdout import write_data
 from des_cli.errors import Complaint, UsageError
 
@@ -37,6 +40,7 @@ FORMATS = ("svg", "pdf", "png")
 
 
 @click.command(
+    cls=Command,
     short_help="Draw one figure of a run, as SVG, PDF or PNG.",
     epilog="""\b
 Examples:
@@ -49,7 +53,8 @@ Figures:
     + "\n".join(f"  {name:<20} {words}" for name, words in FIGURES.items()),
 )
 @click.argument("run")
-@click.option(
+@option(
+    OUTPUT,
     "--figure",
     "name",
     type=click.Choice(list(FIGURES)),
@@ -58,17 +63,20 @@ Figures:
     metavar="NAME",
     help="Which one: see below.",
 )
-@click.option(
+@option(
+    OUTPUT,
     "-o",
     "--out",
     metavar="FILE|-",
-    help="Where it goes; its ending is the format. An earlier file is replaced.  "
-    "[default: the figure's name, as SVG]",
+    help="Where it goes; its ending is the format.  [default: the figure's name, as SVG]",
 )
-@click.option("-f", "--format", "form", type=click.Choice(FORMATS), help="Of standard output.")
+@option(OUTPUT, "-f", "--format", "form", type=click.Choice(FORMATS), help="Of standard output.")
+@overwrite_option("Replace a file that exists.")
 @verbosity_options
 @click.pass_obj
-def plot(console: Console, run: str, name: str, out: str | None, form: str | None) -> None:
+def plot(
+    console: Console, run: str, name: str, out: str | None, form: str | None, overwrite: bool
+) -> None:
     """Draw one figure of RUN, a run folder.
 
     All figures are in one style, and the same run gives the same bytes.
@@ -77,21 +85,22 @@ def plot(console: Console, run: str, name: str, out: str | None, form: str | Non
     format = _format_of(target, form)
 
     from des_cli.results.reading import read_metrics
-    from des_cli.runs_out.atomic import require_file, write_file
+    from des_cli.runs_out.atomic import write_file
     from des_cli.runs_out.stored_run import read_run
     from des_cli.show.plots.figures import draw_figure
 
-    if target != STANDARD_STREAM:
-        require_file(Path(target))
-    stored = read_run(Path(run))
-    try:
-        drawn = draw_figure(name, stored.trajectory, read_metrics(stored.metrics), format)
-    except ValueError as error:
-        raise UsageError([Complaint(run, f"has no figure {name}: {error}")]) from None
-    if target == STANDARD_STREAM:
+    files = [] if target == STANDARD_STREAM else [target]
+    with files_held(files, overwrite):
+        stored = read_run(Path(run))
+        try:
+            drawn = draw_figure(name, stored.trajectory, read_metrics(stored.metrics), format)
+        except ValueError as error:
+            raise UsageError([Complaint(run, f"has no figure {name}: {error}")]) from None
+        if files:
+            write_file(target, drawn, overwrite=overwrite)
+    if not files:
         write_data(drawn)
         return
-    write_file(target, drawn, overwrite=True)
     console.say(f"figure {name} in {console.style(target, 'good')}")
 
 

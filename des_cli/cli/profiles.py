@@ -7,12 +7,14 @@ import json
 
 import click
 
+from des_cli.cli.command import Command
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.options import text_or_json_option
 from des_cli.cli.stdout import write_data
 
 
 @click.command(
+    cls=Command,
     short_help="List the built-in profiles, or print one.",
     epilog="""\b
 Examples:

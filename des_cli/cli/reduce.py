@@ -9,6 +9,7 @@ from click.core import ParameterSource
 
 from des_cli.batch.job import Job, Output
 from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.command import BATCH, CLUSTER, OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
 from des_cli.cli.form_options import (
@@ -22,6 +23,8 @@ from des_cli.cli.options import (
     DEFAULT_RUNS,
     TABLE_FORMATS,
     fail_on_option,
+    jobs_option,
+    overwrite_option,
     reduction_options,
     reduction_settings,
 )
@@ -41,6 +44,7 @@ from des_cli.runs_out.forms import Form
 
 
 @click.command(
+    cls=Command,
     short_help="Reduce the cross-coupling of profiles; write command tables.",
     epilog="""\b
 Examples:
@@ -55,14 +59,16 @@ Examples:
 @machine_option
 @setting_options
 @reduction_options
-@click.option(
+@option(
+    OUTPUT,
     "-o",
     "--out",
     metavar="DIR|FILE|-",
     help="The run folder (for several profiles: the folder of their run folders), or a file "
     "of the command table alone, or stdout.  [default: runs/NAME]",
 )
-@click.option(
+@option(
+    OUTPUT,
     "-f",
     "--format",
     "table_format",
@@ -71,24 +77,21 @@ Examples:
 )
 @form_options
 @hz_option
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=0),
-    default=1,
-    show_default=True,
-    help="Profiles at a time; 0 is one for each CPU.",
-)
-@click.option(
+@jobs_option("Profiles at a time; 0 is one for each CPU.")
+@option(
+    CLUSTER,
     "--scheduler",
     metavar="tcp://HOST:PORT",
     help="Reduce on the workers of this Dask scheduler instead of here; runs are written here.",
 )
-@click.option(
+@option(
+    BATCH,
     "--store",
     metavar="DIR",
     help="Also add a row a run to this store of Parquet files; report --store reads it.",
 )
-@click.option(
+@option(
+    BATCH,
     "--grid",
     metavar="KEY=V,V...",
     multiple=True,
@@ -96,11 +99,11 @@ Examples:
     "with every combination.",
 )
 @fail_on_option
-@click.option("--keep-going", is_flag=True, help="Go on with the others after one has failed.")
-@click.option("--resume", is_flag=True, help="Keep finished runs of the very same profile.")
-@click.option("--overwrite", is_flag=True, help="Replace an output that exists.")
-@click.option("--dry-run", is_flag=True, help="Check the profiles and say what would be written.")
-@click.option("--no-plots", is_flag=True, help="Write no plots into the run folder.")
+@option(BATCH, "--keep-going", is_flag=True, help="Go on with the others after one has failed.")
+@option(BATCH, "--resume", is_flag=True, help="Keep finished runs of the very same profile.")
+@overwrite_option("Replace an output that exists.")
+@option(OUTPUT, "--dry-run", is_flag=True, help="Check the profiles and say what would be written.")
+@option(OUTPUT, "--no-plots", is_flag=True, help="Write no plots into the run folder.")
 @verbosity_options
 @click.pass_obj
 def reduce(

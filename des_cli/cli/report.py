@@ -7,15 +7,18 @@ from pathlib import Path
 import click
 
 from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.command import OUTPUT, STORE, Command, option
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
-from des_cli.cli.options import DEFAULT_RUNS
+from des_cli.cli.options import DEFAULT_RUNS, overwrite_option
+from des_cli.cli.outputs import files_held
 from des_cli.cli.report_store import list_store
 from des_cli.cli.stdout import write_data
 from des_cli.errors import Complaint, DesError, FileAccessError
 
 
 @click.command(
+    cls=Command,
     short_help="Put runs on one HTML page.",
     epilog="""\b
 Examples:
@@ -25,15 +28,17 @@ Examples:
 """,
 )
 @click.argument("runs", metavar="[RUN]...", nargs=-1)
-@click.option(
+@option(
+    OUTPUT,
     "-o",
     "--out",
     metavar="FILE|-",
-    help="The page, or the rows of a store as CSV; an earlier file is replaced.  "
-    "[default: report.html, or stdout]",
+    help="The page, or the rows of a store as CSV.  [default: report.html, or stdout]",
 )
-@click.option("--store", metavar="DIR", help="Instead: list the runs of a store.")
-@click.option(
+@overwrite_option("Replace a file that exists.")
+@option(STORE, "--store", metavar="DIR", help="Instead: list the runs of a store.")
+@option(
+    STORE,
     "--where",
     metavar="CONDITION",
     help="Of a store only these, such as: seat_g_rms_error_g <= 0.05 and status = converged",
@@ -44,6 +49,7 @@ def report(
     console: Console,
     runs: tuple[str, ...],
     out: str | None,
+    overwrite: bool,
     store: str | None,
     where: str | None,
 ) -> None:
@@ -56,23 +62,22 @@ def report(
     if store is not None:
         if runs:
             raise click.UsageError("--store lists the runs of a store: leave out RUN.")
-        list_store(console, store, where, out)
+        list_store(console, store, where, out, overwrite=overwrite)
         return
     if where is not None:
         raise click.UsageError("--where needs --store.")
-    _make_page(console, runs, out or "report.html")
+    _make_page(console, runs, out or "report.html", overwrite)
 
 
-def _make_page(console: Console, runs: tuple[str, ...], out: str) -> None:
-    from des_cli.runs_out.atomic import require_file, write_file
+def _make_page(console: Console, runs: tuple[str, ...], out: str, overwrite: bool) -> None:
+    from des_cli.runs_out.atomic import write_file
     from des_cli.runs_out.stored_run import StoredRun, read_run
     from des_cli.show.page.page import render_report
 
-    if out != STANDARD_STREAM:
-        require_file(Path(out))
     stored: list[StoredRun] = []
     complaints: list[Complaint] = []
-    with console.working() as line:
+    files = [] if out == STANDARD_STREAM else [out]
+    with files_held(files, overwrite), console.working() as line:
         line.stage("reading runs")
         for folder in _run_folders(runs or (DEFAULT_RUNS,)):
             try:
@@ -83,10 +88,11 @@ def _make_page(console: Console, runs: tuple[str, ...], out: str) -> None:
             raise FileAccessError(complaints)
         line.stage("page")
         page = render_report(stored)
-    if out == STANDARD_STREAM:
+        if files:
+            write_file(out, page.encode(), overwrite=overwrite)
+    if not files:
         write_data(page)
         return
-    write_file(out, page.encode(), overwrite=True)
     count = "1 run" if len(stored) == 1 else f"{len(stored)} runs"
     console.say(f"{count} in {console.style(out, 'good')}")
 

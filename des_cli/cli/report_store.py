@@ -9,6 +9,7 @@ from typing import Any
 
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.console import Console
+from des_cli.cli.outputs import files_held
 from des_cli.cli.stdout import write_data, write_line
 
 _SHOWN = {
@@ -27,7 +28,9 @@ _AT_ONCE = 1000
 """Rows of which the widths of columns are taken together."""
 
 
-def list_store(console: Console, store: str, where: str | None, out: str | None) -> None:
+def list_store(
+    console: Console, store: str, where: str | None, out: str | None, *, overwrite: bool = False
+) -> None:
     """Print or write the runs of a store.
 
     Parameters
@@ -39,6 +42,8 @@ def list_store(console: Console, store: str, where: str | None, out: str | None)
         A condition.
     out : str, optional
         A file for CSV, or ``-``; None is stdout, on a terminal as aligned text.
+    overwrite : bool
+        Whether a file that exists may be replaced.
     """
     from des_cli.runs_out.store import read_rows
     from des_cli.runs_out.store_filter import parse_condition
@@ -55,7 +60,8 @@ def list_store(console: Console, store: str, where: str | None, out: str | None)
     else:
         from des_cli.runs_out.atomic import write_file
 
-        write_file(str(out), b"".join(_csv(columns, counted)), overwrite=True)
+        with files_held([str(out)], overwrite):
+            write_file(str(out), b"".join(_csv(columns, counted)), overwrite=overwrite)
     console.say("1 run" if counted.count == 1 else f"{counted.count} runs")
 
 

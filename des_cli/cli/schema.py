@@ -6,15 +6,17 @@ import json
 
 import click
 
+from des_cli.cli.command import Command
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.stdout import write_data
 
 
 @click.command(
+    cls=Command,
     epilog="""\b
 Example:
   des-coriolis schema > des-coriolis.schema.json
-"""
+""",
 )
 @verbosity_options
 def schema() -> None:

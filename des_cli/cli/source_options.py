@@ -10,6 +10,7 @@ from typing import Any, TypeVar, cast
 import click
 
 from des_cli.batch.source import STANDARD_STREAM, Source
+from des_cli.cli.command import PROFILE, RECORD, option
 from des_cli.cli.conditioning_options import conditioning_options
 from des_cli.errors import Complaint, FileAccessError
 from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
@@ -30,7 +31,8 @@ def setting_options(command: F) -> F:
 
     ``--gap`` comes to the command as a setting; its own value is not passed.
     """
-    settings = click.option(
+    settings = option(
+        PROFILE,
         "--set",
         "settings",
         metavar="KEY=VALUE",
@@ -38,7 +40,8 @@ def setting_options(command: F) -> F:
         callback=_with_gap,
         help="Override a key of the profile by its path, such as reduction.r2=0.2; repeatable.",
     )
-    columns = click.option(
+    columns = option(
+        PROFILE,
         "--column",
         "columns",
         metavar="NAME=HEADER",
@@ -46,7 +49,8 @@ def setting_options(command: F) -> F:
         callback=_read_columns,
         help="Take a column of a CSV profile under its own header, such as t_s=t; repeatable.",
     )
-    gap = click.option(
+    gap = option(
+        RECORD,
         "--gap",
         type=click.Choice(["refuse", "bridge", "split"]),
         is_eager=True,
@@ -55,13 +59,15 @@ def setting_options(command: F) -> F:
         help="Where samples are missing: refuse, interpolate, or make a profile of each stretch.  "
         "[default: bridge up to 0.5 s]",
     )
-    separator = click.option(
+    separator = option(
+        PROFILE,
         "--separator",
         metavar="SIGN",
         callback=_read_separator,
         help="What stands between the columns of a CSV profile: ',', ';', '|', tab or space.",
     )
-    decimal = click.option(
+    decimal = option(
+        PROFILE,
         "--decimal",
         metavar="SIGN",
         callback=_read_decimal,
@@ -77,7 +83,8 @@ def _cap_options(command: F) -> F:
     def with_caps(*args: Any, max_rows: int, max_mib: int, **values: Any) -> Any:
         return command(*args, caps=Caps(max_rows, max_mib), **values)
 
-    rows = click.option(
+    rows = option(
+        PROFILE,
         "--max-rows",
         type=click.IntRange(min=2),
         metavar="N",
@@ -85,7 +92,8 @@ def _cap_options(command: F) -> F:
         show_default=True,
         help="The most rows of a table, and samples of a profile, that are read.",
     )
-    mib = click.option(
+    mib = option(
+        PROFILE,
         "--max-mib",
         type=click.IntRange(min=1),
         metavar="N",
@@ -98,12 +106,18 @@ def _cap_options(command: F) -> F:
 
 def machine_option(command: F) -> F:
     """Add ``--machine``, which names another machine than the profile's."""
-    return click.option(
+    return machine_option_below(PROFILE)(command)
+
+
+def machine_option_below(heading: str) -> Callable[[F], F]:
+    """Return what adds ``--machine`` below another heading than that of a profile."""
+    return option(
+        heading,
         "--machine",
         metavar="NAME|FILE",
         callback=_require_name,
         help="A built-in machine or a YAML file, instead of the profile's.  [default: des]",
-    )(command)
+    )
 
 
 def machine_settings(machine: str | None) -> tuple[Setting, ...]:

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
+from des_cli.cli.command import STATE, option
 from des_cli.model.machine import JOINTS
 from des_cli.units import split_unit, suffixes
 
@@ -24,7 +25,9 @@ LARGEST = 1e6
 """Largest magnitude of an option in SI units; no machine comes near."""
 
 
-def state_options(quantities: Sequence[tuple[str, str]] = QUANTITIES) -> Callable[[F], F]:
+def state_options(
+    quantities: Sequence[tuple[str, str]] = QUANTITIES, heading: str = STATE
+) -> Callable[[F], F]:
     """Return what adds an option for each quantity and each unit that measures it."""
 
     def add(command: F) -> F:
@@ -33,7 +36,8 @@ def state_options(quantities: Sequence[tuple[str, str]] = QUANTITIES) -> Callabl
                 name = f"{stem}_{suffix}"
                 plain = kind == "angle" and "_" in stem
                 words = stem.replace("_", " ") if plain else f"{stem} {kind}"
-                command = click.option(
+                command = option(
+                    heading,
                     option_name(name),
                     name,
                     type=float,

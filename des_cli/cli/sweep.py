@@ -9,9 +9,16 @@ import click
 
 from des_cli.batch.job import TableFormat
 from des_cli.batch.source import STANDARD_STREAM, Source
+from des_cli.cli.command import CURVE, OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import VERBOSE, Console
-from des_cli.cli.options import TABLE_FORMATS, reduction_options_without, reduction_settings
+from des_cli.cli.options import (
+    TABLE_FORMATS,
+    jobs_option,
+    overwrite_option,
+    reduction_options_without,
+    reduction_settings,
+)
 from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_of
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.sweep_options import (
@@ -39,6 +46,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
+    cls=Command,
     short_help="Trade deviation for cross-coupling: a curve of optima.",
     epilog=f"""\b
 Examples:
@@ -50,20 +58,23 @@ Examples:
 """,
 )
 @click.argument("profile", metavar="PROFILE")
-@click.option(
+@option(
+    CURVE,
     "--budgets",
     metavar="MOST,...",
     callback=read_swept_budgets,
     help=f"Budgets of {DEFAULT_METRIC}, or METRIC=MOST,... of another fidelity metric; "
     "the profile's budgets on other metrics stay.  [default: 0.01,0.02,0.05,0.1]",
 )
-@click.option(
+@option(
+    CURVE,
     "--r2s",
     metavar="WEIGHT,...",
     callback=read_weights,
     help="Instead of budgets: weights r2 on leaving the desired rates.",
 )
-@click.option(
+@option(
+    CURVE,
     "--controls",
     metavar="CONTROL,...",
     default=",".join(DEFAULT_CONTROLS),
@@ -74,28 +85,24 @@ Examples:
 @machine_option
 @setting_options
 @reduction_options_without("method", "algorithm", "control", "tolerance", "iterations")
-@click.option(
+@option(
+    OUTPUT,
     "-o",
     "--out",
     metavar="FILE|-",
     help="Where the points go.  [default: stdout, as aligned text on a terminal]",
 )
-@click.option(
+@option(
+    OUTPUT,
     "-f",
     "--format",
     "table_format",
     type=click.Choice(TABLE_FORMATS),
     help="Format of the points.  [default: by the suffix of FILE, or csv]",
 )
-@click.option("--plot", metavar="FILE.png", help="Draw the curve into this file.")
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=0),
-    default=1,
-    show_default=True,
-    help="Points at a time; 0 is one for each CPU.",
-)
-@click.option("--overwrite", is_flag=True, help="Replace files that exist.")
+@option(OUTPUT, "--plot", metavar="FILE.png", help="Draw the curve into this file.")
+@jobs_option("Points at a time; 0 is one for each CPU.")
+@overwrite_option("Replace files that exist.")
 @verbosity_options
 @click.pass_obj
 def sweep(

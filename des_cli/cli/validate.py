@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from des_cli.cli.command import Command
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
 from des_cli.cli.options import reduction_options, reduction_settings, text_or_json_option
@@ -32,6 +33,7 @@ KINDS = {"JointCommands": "joints", "BodyRates": "body_rates", "GCommand": "g"}
 
 
 @click.command(
+    cls=Command,
     short_help="Check profiles and name all of their problems.",
     epilog="""\b
 Examples:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from des_cli.cli.command import MACHINE, Command
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
 from des_cli.cli.options import fail_on_option, text_or_json_option
-from des_cli.cli.source_options import machine_option, read_stdin
+from des_cli.cli.source_options import machine_option_below, read_stdin
 from des_cli.cli.state_options import in_si, state_options
 from des_cli.cli.stdout import write_line
 from des_cli.cli.targets import LARGEST, STANDING, check_target, tell_verdict
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
+    cls=Command,
     short_help="Check a run or a command table before a machine loads it.",
     epilog="""\b
 Examples:
@@ -31,8 +33,8 @@ Examples:
 """,
 )
 @click.argument("targets", metavar="RUN|TABLE...", nargs=-1, required=True)
-@machine_option
-@state_options(STANDING)
+@machine_option_below(MACHINE)
+@state_options(STANDING, MACHINE)
 @fail_on_option
 @text_or_json_option("json prints one object a line, with every check.")
 @verbosity_options

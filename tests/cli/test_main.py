@@ -46,6 +46,7 @@ def test_group_lists_every_command(invoke) -> None:
 
 def test_version(invoke) -> None:
     assert invoke("--version").stdout == f"des-coriolis {__version__}\n"
+    assert invoke("-V").stdout == f"des-coriolis {__version__}\n"
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,10 @@ def test_the_ending_is_the_format(
     target = tmp_path / f"fig.{suffix}"
     target.write_text("old")
     result = invoke("plot", run_folder, "--figure", "10", "-o", target.name)
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert result.stderr == f"fig.{suffix}: exists; --overwrite replaces it\n"
+    assert target.read_text() == "old"
+    result = invoke("plot", run_folder, "--figure", "10", "-o", target.name, "--overwrite")
     assert (result.exit_code, result.stdout) == (0, "")
     assert result.stderr == f"figure 10 in fig.{suffix}\n"
     assert target.read_bytes().startswith(start)

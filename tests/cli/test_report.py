@@ -24,9 +24,15 @@ def test_without_arguments_every_run_under_runs(invoke, tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("two_runs", "undrawn")
-def test_a_second_report_replaces_the_first(invoke, tmp_path: Path) -> None:
+def test_a_second_report_replaces_the_first_only_where_that_is_asked(
+    invoke, tmp_path: Path
+) -> None:
     (tmp_path / "report.html").write_text("old")
-    assert invoke("report").exit_code == 0
+    result = invoke("report")
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert result.stderr == "report.html: exists; --overwrite replaces it\n"
+    assert (tmp_path / "report.html").read_text() == "old"
+    assert invoke("report", "--overwrite").exit_code == 0
     assert "two" in (tmp_path / "report.html").read_text()
 
 
