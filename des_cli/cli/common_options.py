@@ -9,12 +9,13 @@ import click
 
 from des_cli.cli.command import GENERAL, option
 from des_cli.cli.console import Console
+from des_cli.cli.lines import LogFormat
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 def verbosity_options(command: F) -> F:
-    """Add ``-q`` and ``-v``, on the group and on every command alike."""
+    """Add ``-q``, ``-v`` and ``--log-format``, on the group and on every command alike."""
     quiet = option(
         GENERAL,
         "-q",
@@ -33,7 +34,15 @@ def verbosity_options(command: F) -> F:
         callback=_on_verbose,
         help="Print a line for each iteration; twice: also the traceback of a bug.",
     )
-    return quiet(verbose(command))
+    log_format = option(
+        GENERAL,
+        "--log-format",
+        type=click.Choice(["text", "json"]),
+        expose_value=False,
+        callback=_on_log_format,
+        help="Words on stderr for people, or an object a line for programs.  [default: text]",
+    )
+    return quiet(verbose(log_format(command)))
 
 
 def color_option(command: F) -> F:
@@ -64,6 +73,13 @@ def _on_quiet(context: click.Context, parameter: click.Parameter, value: bool) -
 def _on_verbose(context: click.Context, parameter: click.Parameter, value: int) -> None:
     if value:
         _console(context).verbosity = value
+
+
+def _on_log_format(
+    context: click.Context, parameter: click.Parameter, value: LogFormat | None
+) -> None:
+    if value is not None:
+        _console(context).log_format = value
 
 
 def _on_color(context: click.Context, parameter: click.Parameter, value: str) -> None:

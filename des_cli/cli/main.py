@@ -19,6 +19,7 @@ import click
 from des_cli import __version__
 from des_cli.cli.common_options import color_option, verbosity_options
 from des_cli.cli.console import DEBUG_VARIABLE, Console
+from des_cli.cli.lines import asked_log_format
 from des_cli.cli.terminal import give_up
 from des_cli.errors import ExitCode, Failure
 from des_cli.signals import cause_of, stopping
@@ -78,8 +79,11 @@ class Program(click.Group):
         name = prog_name or PROGRAM
         self._main_shell_completion(extra, name, complete_var)
         console = Console()
+        words = list(sys.argv[1:] if args is None else args)
+        # A command line may be wrong before its options count.
+        console.log_format = asked_log_format(words)
         try:
-            code = self._dispatch(list(sys.argv[1:] if args is None else args), name, console)
+            code = self._dispatch(words, name, console)
             # A full disk or a reader that went away shows only now.
             if sys.stdout is not None:
                 sys.stdout.flush()

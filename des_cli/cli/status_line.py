@@ -132,7 +132,7 @@ class StatusLine:
         now = self._clock()
         if self._stream is None or now - self._began < DELAY_S or now - self._drawn < INTERVAL_S:
             return
-        columns = _columns(self._stream)
+        columns = columns_of(self._stream) or _NARROW
         self._write(_ERASE + printable(self._text(now))[: columns - 1])
         self._shown, self._drawn = True, now
 
@@ -178,8 +178,37 @@ def duration_words(seconds: float) -> str:
     return f"{seconds:.0f} s"
 
 
-def _columns(stream: TextIO) -> int:
+def columns_of(stream: TextIO | None) -> int | None:
+    """Return how wide a terminal is, None of what is none or does not tell."""
     try:
-        return os.get_terminal_size(stream.fileno()).columns or _NARROW
+        return os.get_terminal_size(stream.fileno()).columns or None if stream else None
     except (OSError, ValueError):
-        return _NARROW
+        return None
+
+
+class ProgressLog(StatusLine):
+    """What is being done, as messages for a program.
+
+    Parameters
+    ----------
+    tell : callable
+        Takes what is being done, and how many are done of how many.
+    total, noun
+        As of `StatusLine`.
+    """
+
+    def __init__(self, tell: Callable[..., None], *, total: int = 1, noun: str = "profiles"):
+        super().__init__(None, total=total, noun=noun)
+        self._tell = tell
+
+    def stage(self, text: str) -> None:
+        """Tell what is done from now on."""
+        if text != self._stage:
+            self._stage = text
+            self._tell(text, done=self._done, total=self._total)
+
+    def advance(self) -> None:
+        """Tell that one more is done."""
+        super().advance()
+        done = f"{self._done} of {self._total} {self._noun} done"
+        self._tell(done, done=self._done, total=self._total)

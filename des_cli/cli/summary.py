@@ -1,22 +1,24 @@
-"""A finished run in a few lines for a person: what was gained, and what it cost."""
+"""A finished run in a few lines for a person: what is felt of it, and what it cost."""
 
 from __future__ import annotations
 
-from des_cli.batch.job import JobResult
-from des_cli.cli.console import Console
-from des_cli.cli.summary_rows import (
-    changes,
-    limits_used,
-    summary_rows,
-)
-from des_cli.errors import Failure
-from des_cli.model.metric import SEAT_G_ERROR, SEAT_RATE_DEVIATION
-from des_cli.model.metrics import Metrics
-from des_cli.results.reading import read_metrics
-from des_cli.results.worse import worse_words
-from des_cli.show.words import CONSOLE, steps_taken, told_parts
+from typing import TYPE_CHECKING, Any
 
-_LABEL_WIDTH = 14
+from des_cli.batch.job import JobResult
+from des_cli.cli.console import LABEL_WIDTH, QUIET, Console
+from des_cli.cli.summary_rows import changes, felt_rows, felt_words, limits_used, other_rows
+from des_cli.errors import Failure
+from des_cli.model.metrics import Metrics
+from des_cli.model.notice import Notice
+from des_cli.results.reading import read_metrics
+from des_cli.results.worse import find_worse, worse_numbers, worse_words
+from des_cli.show.words import told_parts
+
+if TYPE_CHECKING:
+    from des_cli.cli.lines import Level
+
+_WORSE = "worse"
+"""The notice that says of a ride what its first line says."""
 
 
 def print_result(
@@ -35,58 +37,87 @@ def print_result(
         Whether a status line counts the jobs and a table follows: then a job of several
         has its line only if something is to be told below it.
     """
+    profile = result.name or result.source
     if result.exit_code:
         failure = Failure(result.exit_code, result.complaints, result.traceback)
-        console.failure(failure)
+        console.failure(failure, profile=profile)
         refused = "\n".join(result.complaints)
-        console.warn(each.text for each in result.notices if each.text not in refused)
+        for notice in result.notices:
+            if notice.text not in refused:
+                facts = {"profile": profile, "name": notice.name}
+                console.warn([notice.text], kind="notice", **facts)
         return
     if result.state != "reduced" or result.metrics is None:
         if not counted or result.state == "planned":
-            console.say(_idle_line(console, result))
+            kind = "planned" if result.state == "planned" else "summary"
+            console.say(_idle_line(console, result), kind, **_facts(console, result))
         return
     metrics = read_metrics(result.metrics)
-    if alone:
-        for line in _headlines(console, result.name, metrics):
-            console.say(line)
-        for label, text in summary_rows(metrics, result.objective):
-            console.say(f"  {label:<{_LABEL_WIDTH}} {text}")
-    elif not counted or result.violations or result.notices:
-        console.say(_reduced_line(console, result, metrics))
-    label = f"  {'limits':<{_LABEL_WIDTH}} "
-    whose = "" if alone else f"{result.name}: "
-    console.warn(f"{label}{whose}{line}" for line in result.violations)
-    if alone and not any(line.startswith("modified") for line in result.violations):
+    if console.log_format == "json":
+        words = felt_words(metrics)
+        console.say(f"{profile}: {words}", "summary", **_facts(console, result))
+        _print_attention(console, result, result.notices, "")
+    elif alone:
+        _print_alone(console, result, metrics)
+    else:
+        if not counted or result.violations or result.notices:
+            console.headline(_reduced_line(console, result, metrics))
+        # Without the line above, what follows must say whose it is.
+        whose = f"{result.name}: " if console.verbosity <= QUIET else ""
+        _print_attention(console, result, result.notices, whose)
+
+
+def _print_alone(console: Console, result: JobResult, metrics: Metrics) -> None:
+    name, felt = console.style(result.name, "title"), felt_words(metrics)
+    told = result.notices
+    if worse := worse_words(metrics):
+        console.headline(f"{name}: {console.style(worse, 'warning')}")
+        if console.verbosity > QUIET:
+            # Its notice says the same once more, and what bounds it.
+            told = tuple(notice for notice in told if notice.name != _WORSE)
+        if cures := [each.cure for each in find_worse(metrics) if each.cure]:
+            console.row("bounded by", ", ".join(cures))
+        console.row("felt", felt)
+    else:
+        console.headline(f"{name}: {felt}")
+    for label, text in felt_rows(metrics, result.objective, worse_numbers(metrics)):
+        console.row(label, text)
+    _print_attention(console, result, told, "")
+    if not any(line.startswith("modified") for line in result.violations):
         kept = "kept by the modified motion" if result.violations else "all kept"
-        console.say(f"{label}{kept}{limits_used(metrics)}")
-    for notice in result.notices:
-        line = f"  {'notice':<{_LABEL_WIDTH}} {notice.text}"
-        if notice.harmful:
-            console.warn([line])
-        else:
-            console.say(console.style(line, "warning"))
-    if alone and result.table is None:
-        console.say(f"  {'written':<{_LABEL_WIDTH}} {console.style(result.written, 'good')}")
+        console.row("limits", f"{kept}{limits_used(metrics)}")
+    for label, text in other_rows(metrics):
+        console.row(label, text)
+    if result.table is None:
+        console.row("written", result.written, "good")
 
 
-def _headlines(console: Console, profile: str, metrics: Metrics) -> list[str]:
-    """Return the first lines: what got worse, if anything, then how it was solved."""
-    solver = metrics.solver
-    how = (
-        f"{solver.method} cross-coupling by {solver.algorithm}, "
-        f"{solver.control} control, {solver.axes} axes"
-    )
-    look = "good" if solver.status == "converged" else "warning"
-    ended = console.style(f"{solver.status} in {steps_taken(solver.iterations)}", look)
-    status = f"{ended} ({how})"
-    name = console.style(profile, "title")
-    worse = worse_words(metrics)
-    if not worse:
-        return [f"{name}: {status}"]
-    return [
-        f"{name}: {console.style(worse, 'warning')}",
-        f"  {'solved':<{_LABEL_WIDTH}} {status}",
-    ]
+def _print_attention(
+    console: Console, result: JobResult, notices: tuple[Notice, ...], whose: str
+) -> None:
+    """Print the limits that are broken, and the notices: those that warn of harm always."""
+    for line in result.violations:
+        facts = {"profile": result.name}
+        console.row("limits", f"{whose}{line}", _LOOK, kind="limit", level=_LOOK, **facts)
+    for notice in notices:
+        level: Level = "warning" if notice.harmful else "info"
+        facts = {"profile": result.name, "name": notice.name}
+        console.row("notice", f"{whose}{notice}", _LOOK, kind="notice", level=level, **facts)
+
+
+_LOOK: Level = "warning"
+
+
+def _facts(console: Console, result: JobResult) -> dict[str, Any]:
+    """Return what a program is told of a run: what ``summary.csv`` says of it."""
+    if console.log_format != "json":
+        return {}
+    from dataclasses import asdict
+
+    from des_cli.batch.summary import SummaryRow
+
+    row = asdict(SummaryRow.of(result)) | {"profile": result.name, "written": result.written}
+    return {key: value for key, value in row.items() if key not in ("name", "message", "folder")}
 
 
 def _idle_line(console: Console, result: JobResult) -> str:
@@ -96,15 +127,14 @@ def _idle_line(console: Console, result: JobResult) -> str:
 
 
 def _reduced_line(console: Console, result: JobResult, metrics: Metrics) -> str:
-    rate = CONSOLE.percent(metrics.fidelity.value(SEAT_RATE_DEVIATION))
-    error = CONSOLE.number(metrics.fidelity.value(SEAT_G_ERROR))
-    gained = changes(metrics, told_parts(result.objective))
-    worse = worse_words(metrics, short=True)
+    # A notice below it says what got worse with all its numbers.
+    noticed = any(notice.name == _WORSE for notice in result.notices)
+    worse = "" if noticed else worse_words(metrics, short=True)
     told = f"{console.style(worse, 'warning')}; " if worse else ""
-    cost = f"seat rate {rate}, G {error} g rms"
-    where = console.style(result.written, "good")
-    return f"{_column(console, result)} {told}{gained}, {cost}  {where}"
+    weighed = changes(metrics, told_parts(result.objective)[1:])
+    felt = ", ".join(text for text in (felt_words(metrics), weighed) if text)
+    return f"{_column(console, result)} {told}{felt}  {console.style(result.written, 'good')}"
 
 
 def _column(console: Console, result: JobResult) -> str:
-    return console.style(f"{result.name:<20}", "title")
+    return console.style(f"{result.name:<{LABEL_WIDTH + 2}}", "title")

@@ -1,4 +1,4 @@
-"""The rows of a run's summary: what is felt first, then what it cost."""
+"""The rows of a run's summary: what is felt, and what stands behind it."""
 
 from __future__ import annotations
 
@@ -17,30 +17,71 @@ from des_cli.model.metric import (
 from des_cli.model.metrics import Change, Metrics, When
 from des_cli.results.budgets import spent_budgets
 from des_cli.results.ends import end_words
-from des_cli.show.words import CONSOLE, PARTS, axis_name, told_parts
+from des_cli.results.worse import FeltNumber
+from des_cli.show.words import CONSOLE, PARTS, axis_name, steps_taken, told_parts
 
 _DRIVEN: tuple[Driven, ...] = get_args(Driven)
 
 
-def summary_rows(metrics: Metrics, objective: Collection[str]) -> list[tuple[str, str]]:
-    """Return labels and texts of the summary: what is felt first.
+def felt_words(metrics: Metrics) -> str:
+    """Say in one line what the pilot feels of the reduction."""
+    rate, error = metrics.fidelity.value(SEAT_RATE_DEVIATION), metrics.fidelity.value(SEAT_G_ERROR)
+    reduction = metrics.coriolis.reduction("vector")
+    return _joined(
+        ("cross-coupling", "" if reduction is None else CONSOLE.less(reduction), ""),
+        ("seat rate off by", "" if rate is None else CONSOLE.percent(rate), ""),
+        ("G off by", "" if error is None else CONSOLE.number(error), "g rms"),
+    )
+
+
+def felt_rows(
+    metrics: Metrics, objective: Collection[str], told: Collection[FeltNumber] = ()
+) -> list[tuple[str, str]]:
+    """Return labels and texts of what is felt, beside what `felt_words` says.
 
     Parameters
     ----------
     metrics : Metrics
     objective : collection of str
         The parts of the cross-coupling that are weighed, by their keys.
+    told : collection of FeltNumber
+        Numbers that are left out, because they were told as what got worse.
     """
+    seat: tuple[ComponentKey, ...] = ("seat_x", "seat_y", "seat_z")
+    weighed = tuple(key for key in told_parts(objective) if key not in ("vector", *seat))
+    size = CONSOLE.from_to(metrics.coriolis.parts["vector"].sizes.rms)
+    rows = [
+        (
+            "cross-coupling",
+            "; ".join(
+                text
+                for text in (
+                    f"{size} rad/s² rms" if size else "",
+                    changes(metrics, (*weighed, *seat)),
+                )
+                if text
+            ),
+        ),
+        ("turning", _turning(metrics, told)),
+        ("seat G", _force(metrics, told)),
+        ("ends", _ends(metrics)),
+    ]
+    return [(label, text) for label, text in rows if text]
+
+
+def other_rows(metrics: Metrics) -> list[tuple[str, str]]:
+    """Return labels and texts of what stands behind it: budgets, the study, the solver."""
+    solver = metrics.solver
+    how = (
+        f"{solver.method} cross-coupling by {solver.algorithm}, "
+        f"{solver.control} control, {solver.axes} axes"
+    )
     rows = [
         ("changed first", changed_words(metrics)),
-        ("cross-coupling", changes(metrics, told_parts(objective), rms=True)),
-        ("", changes(metrics, ("seat_x", "seat_y", "seat_z"))),
-        ("turning", _turning(metrics)),
-        ("seat G", _force(metrics)),
         ("budgets", _budgets(metrics)),
         ("constants", _constants(metrics)),
-        ("ends", _ends(metrics)),
         ("study", "; ".join(_study(metrics))),
+        ("solved", f"{solver.status} in {steps_taken(solver.iterations)} ({how})"),
     ]
     return [(label, text) for label, text in rows if text]
 
@@ -92,15 +133,13 @@ def _constants(metrics: Metrics) -> str:
     )
 
 
-def changes(metrics: Metrics, keys: tuple[ComponentKey, ...], *, rms: bool = False) -> str:
-    """Say what became of components; with ``rms`` also of the whole vector's size."""
-    texts = []
-    for key in keys:
-        part = metrics.coriolis.parts[key]
-        text = f"{PARTS[key]} {CONSOLE.less(part.reduction)}"
-        pair = CONSOLE.from_to(part.sizes.rms) if rms and key == "vector" else ""
-        texts.append(f"{text} ({pair} rad/s² rms)" if pair else text)
-    return ", ".join(texts)
+def changes(metrics: Metrics, keys: tuple[ComponentKey, ...]) -> str:
+    """Say what became of components, of those of which it is known."""
+    return ", ".join(
+        f"{PARTS[key]} {CONSOLE.less(reduction)}"
+        for key in keys
+        if (reduction := metrics.coriolis.reduction(key)) is not None
+    )
 
 
 def _joined(*parts: tuple[str, str, str]) -> str:
@@ -110,23 +149,25 @@ def _joined(*parts: tuple[str, str, str]) -> str:
     )
 
 
-def _turning(metrics: Metrics) -> str:
-    rate, turning = metrics.fidelity.value(SEAT_RATE_DEVIATION), metrics.felt.turning
+def _turning(metrics: Metrics, told: Collection[FeltNumber]) -> str:
+    turning = metrics.felt.turning
+    rms = "" if "turning rms" in told else CONSOLE.from_to(turning.rms)
+    peak = "" if "turning peak" in told else CONSOLE.from_to(turning.peak)
     return _joined(
-        ("total angular acceleration", CONSOLE.from_to(turning.rms), "rad/s² rms"),
-        ("peak", CONSOLE.from_to(turning.peak), ""),
-        ("seat rate off by", "" if rate is None else CONSOLE.percent(rate), ""),
+        ("total angular acceleration", rms, "rad/s² rms"),
+        ("peak", peak, "" if rms else "rad/s²"),
     )
 
 
-def _force(metrics: Metrics) -> str:
-    error, tilt = metrics.fidelity.value(SEAT_G_ERROR), metrics.fidelity.tilt_error_max_deg
+def _force(metrics: Metrics, told: Collection[FeltNumber]) -> str:
+    tilt = metrics.fidelity.tilt_error_max_deg
     axis, sizes = metrics.felt.hardest_onset, metrics.felt.seat_g
+    peak = "" if "gy peak" in told else CONSOLE.from_to(sizes["gy"].peak)
+    onset = "" if f"{axis} onset" in told else CONSOLE.from_to(sizes[axis].onset)
     return _joined(
-        ("off by", "" if error is None else CONSOLE.number(error), "g rms"),
         ("tilt", "" if tilt is None else CONSOLE.number(tilt), "deg at most"),
-        ("peak Gy", CONSOLE.from_to(sizes["gy"].peak), "g"),
-        (f"{axis_name(axis)} onset", CONSOLE.from_to(sizes[axis].onset), "g/s"),
+        ("peak Gy", peak, "g"),
+        (f"{axis_name(axis)} onset", onset, "g/s"),
     )
 
 

@@ -9,25 +9,27 @@ from des_cli.cli.console import Console
 from des_cli.errors import ExitCode
 from des_cli.show.words import CONSOLE
 
-_HEAD: tuple[str, ...] = (
-    *("profile", "status", "cross-coupling", "seat rate off", "G off (g rms)"),
-    *("turning peak", "exit"),
+_HEADS: tuple[tuple[str, ...], ...] = (
+    ("", "", "cross-", "seat rate", "G off", "turning", ""),
+    ("profile", "status", "coupling", "off", "[g rms]", "peak", "exit"),
 )
+"""Two lines, so that the table of usual names fits 80 columns."""
 
 
 def print_table(console: Console, rows: Sequence[SummaryRow]) -> None:
     """Print a line for each run, under a header; nothing of a batch that was only planned."""
-    if all(row.state == "planned" for row in rows):
-        return
-    lines = [_HEAD, *(_cells(row) for row in rows)]
+    if console.log_format == "json" or all(row.state == "planned" for row in rows):
+        return  # a program was told each
+    lines = [*_HEADS, *(_cells(row) for row in rows)]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     for at, cells in enumerate(lines):
         name, status, *numbers = (
             f"{cell:<{width}}" if column < 2 else f"{cell:>{width}}"
             for column, (cell, width) in enumerate(zip(cells, widths, strict=True))
         )
-        look = "faint" if at == 0 else "error" if rows[at - 1].exit_code else "plain"
-        console.say(console.style("  ".join([name, status, *numbers]), look))
+        run = at - len(_HEADS)
+        look = "faint" if run < 0 else "error" if rows[run].exit_code else "plain"
+        console.table(console.style("  ".join([name, status, *numbers]).rstrip(), look))
 
 
 def print_closing(console: Console, rows: Sequence[SummaryRow], planned: int) -> None:
@@ -36,20 +38,18 @@ def print_closing(console: Console, rows: Sequence[SummaryRow], planned: int) ->
     kept = sum(row.state == "kept" for row in rows)
     dry = sum(row.state == "planned" for row in rows)
     missing = planned - len(rows)
-    parts = [
-        f"{count} {what}"
-        for count, what in (
-            (len(rows) - failed - kept - dry, "done"),
-            (dry, "would be done"),
-            (kept, "already done"),
-            (failed, "failed"),
-            (missing, "not run"),
-        )
-        if count
-    ]
+    counts = {
+        "done": len(rows) - failed - kept - dry,
+        "would be done": dry,
+        "already done": kept,
+        "failed": failed,
+        "not run": missing,
+    }
+    parts = [f"{count} {what}" for what, count in counts.items() if count]
     hint = " (--keep-going runs them all)" if missing else ""
     text = f"{planned} profiles: {', '.join(parts)}{hint}"
-    console.say(console.style(text, "error" if failed else "good"))
+    facts = {what.replace(" ", "_"): count for what, count in counts.items()}
+    console.say(console.style(text, "error" if failed else "good"), "batch", **facts)
 
 
 def _cells(row: SummaryRow) -> tuple[str, ...]:
@@ -62,7 +62,7 @@ def _cells(row: SummaryRow) -> tuple[str, ...]:
         "-" if row.vector_reduction is None else CONSOLE.less(row.vector_reduction),
         "-" if rate is None else CONSOLE.percent(rate),
         "-" if force is None else CONSOLE.number(force),
-        "-" if peak is None else f"{CONSOLE.fixed(peak, 2)} times",
+        "-" if peak is None else f"{CONSOLE.fixed(peak, 2)} x",
         str(row.exit_code),
     )
 

@@ -103,11 +103,15 @@ def tell_verdict(
     ExitCode
         ``DONE`` where a machine may play it.
     """
-    console.warn((f"{target}: {check.key}: {check}" for check in verdict.failed), "error")
+    for check in verdict.failed:
+        facts = {"name": check.key, "value": check.value, "tolerance": check.tolerance}
+        text = f"{target}: {check.key}: {check}"
+        console.warn([text], "error", kind="check", target=target, **facts)
     refused = [notice for notice in verdict.notices if notice.name in fail_on]
     for notice in verdict.notices:
         style = "error" if notice in refused else "warning"
-        console.warn([f"{target}: {notice.name}: {notice.text}"], style)
+        text = f"{target}: {notice.name}: {notice.text}"
+        console.warn([text], style, kind="notice", target=target, name=notice.name)
     return ExitCode.NOT_RELEASED if verdict.failed or refused else ExitCode.DONE
 
 

@@ -93,12 +93,12 @@ def validate(
             except (DesError, OSError) as error:
                 failure = Failure.of(error)
                 codes.add(failure.exit_code)
-                console.failure(failure)
+                console.failure(failure, profile=source.name)
                 if form == "json":
                     _write(console, json.dumps(_rejected(source.name, failure)))
             else:
                 for remark in profile.remarks:
-                    console.say(f"{source.name}: {remark}")
+                    console.say(f"{source.name}: {remark}", "notice", profile=source.name)
                 facts = understood(source.name, profile)
                 _write(console, json.dumps(facts) if form == "json" else _line(facts))
             line.advance()

@@ -73,7 +73,7 @@ def verify(
         except (DesError, OSError) as error:
             failure = Failure.of(error)
             codes.append(failure.exit_code)
-            console.failure(failure)
+            console.failure(failure, target=target)
             facts: dict[str, Any] = {"exit_code": failure.exit_code, "problems": failure.lines}
         else:
             codes.append(tell_verdict(console, target, verdict, fail_on))

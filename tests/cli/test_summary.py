@@ -1,11 +1,14 @@
 """The summary says in words what the metrics hold."""
 
+from dataclasses import replace
+
 import pytest
 
 from des_cli.batch.job import JobResult
 from des_cli.cli.console import Console
 from des_cli.cli.summary import print_result
 from des_cli.errors import ExitCode
+from des_cli.model.notice import Notice
 from tests.support.summaries import result, with_change
 
 
@@ -16,18 +19,18 @@ def printed(capsys: pytest.CaptureFixture[str], shown: JobResult, *, alone: bool
 
 def test_a_ride_that_got_worse_is_the_first_line(capsys: pytest.CaptureFixture[str]) -> None:
     lines = printed(capsys, result(), alone=True)
-    assert lines[0] == (
-        "c: converged in 6 iterations "
-        "(minimum cross-coupling by optimum, scalar control, report axes)"
-    )
+    felt = "cross-coupling 45.8 % less, seat rate off by 9.1 %, G off by 0.0834 g rms"
+    assert lines[0] == f"c: {felt}"
     worse = with_change("felt.seat_angular_acceleration.magnitude.rms_after_rad_s2", 2.2)
     lines = printed(capsys, worse, alone=True)
     told = "worse to sit in: total angular acceleration 0.462 -> 2.2 rad/s² rms"
     assert lines[0] == f"c: {told}"
-    assert lines[1].startswith("  solved         converged in 6 iterations (minimum")
+    assert lines[1].startswith("  bounded by     a budget on seat_angular_acceleration_rms_ratio")
+    assert lines[2] == f"  felt           {felt}"
+    assert not any("2.2" in line for line in lines[1:]), "nothing is said twice"
     (line,) = printed(capsys, worse, alone=False)
     assert told in line
-    assert "whole vector 45.8 % less, BB3 68.9 % less, seat rate 9.1 %, G 0.0834 g rms" in line
+    assert f"{felt}, BB3 68.9 % less" in line
     (line,) = printed(capsys, result(), alone=False)
     assert "worse" not in line
 
@@ -84,3 +87,23 @@ def test_a_result_that_is_counted_has_a_line_only_with_something_below_it(
     assert lines(result(violations=("arm too fast",))) == 2
     assert lines(result(state="planned")) == 1
     assert lines(result(exit_code=ExitCode.PROFILE, complaints=("no",), state="failed")) == 1
+
+
+NOTICES = (Notice("worse", "worse to sit in than the profile: much"), Notice("record", "trimmed"))
+
+
+def test_a_notice_that_the_first_line_tells_is_told_only_where_there_is_no_first_line(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    worse = with_change("felt.seat_angular_acceleration.magnitude.rms_after_rad_s2", 2.2)
+    worse = replace(worse, notices=NOTICES)
+    lines = printed(capsys, worse, alone=True)
+    assert [line for line in lines if " notice " in line] == ["  notice         trimmed"]
+    first, *below = printed(capsys, worse, alone=False)
+    assert "worse" not in first
+    assert [line.split(maxsplit=1)[1] for line in below] == [str(each) for each in NOTICES]
+    console = Console()
+    console.verbosity = -1
+    for alone, whose in ((True, ""), (False, "c: ")):
+        print_result(console, worse, alone=alone)
+        assert capsys.readouterr().err == f"  notice         {whose}{NOTICES[0]}\n"

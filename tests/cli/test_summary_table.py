@@ -19,6 +19,7 @@ def test_a_line_a_run(capsys: pytest.CaptureFixture[str]) -> None:
     rows = [SummaryRow.of(each) for each in (result(name="longer"), FAILED, kept)]
     print_table(Console(), rows)
     assert [line.split("  ", 1)[0] for line in capsys.readouterr().err.splitlines()] == [
+        "",
         "profile",
         "longer",
         "c",
@@ -26,10 +27,11 @@ def test_a_line_a_run(capsys: pytest.CaptureFixture[str]) -> None:
     ]
     print_table(Console(), rows)
     assert capsys.readouterr().err == (
-        "profile  status       cross-coupling  seat rate off  G off (g rms)  turning peak  exit\n"
-        "longer   converged       45.8 % less          9.1 %         0.0834             -     0\n"
-        "c        no solution               -              -              -             -     4\n"
-        "c        converged       45.8 % less          9.1 %         0.0834    1.10 times     0\n"
+        "                           cross-  seat rate    G off  turning\n"
+        "profile  status          coupling        off  [g rms]     peak  exit\n"
+        "longer   converged    45.8 % less      9.1 %   0.0834        -     0\n"
+        "c        no solution            -          -        -        -     4\n"
+        "c        converged    45.8 % less      9.1 %   0.0834   1.10 x     0\n"
     )
 
 
@@ -47,7 +49,7 @@ def test_how_a_run_ended(
     capsys: pytest.CaptureFixture[str], changes: dict[str, object], status: str
 ) -> None:
     print_table(Console(), [SummaryRow.of(result(**changes))])
-    assert f" {status}  " in capsys.readouterr().err.splitlines()[1]
+    assert f" {status}  " in capsys.readouterr().err.splitlines()[2]
 
 
 def test_what_is_planned_or_quiet_has_no_table(capsys: pytest.CaptureFixture[str]) -> None:
