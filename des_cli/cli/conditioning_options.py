@@ -9,6 +9,7 @@ from typing import Any, TypeVar, cast
 import click
 
 from des_cli.cli.command import RECORD, option
+from des_cli.cli.completion import complete_words
 from des_cli.profiles_in.setting import Setting, value_of_option
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -20,6 +21,8 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("resample", "SECONDS", "Put a record on a uniform grid of this step."),
     ("smooth", "HZ", "Take what is faster out of a record before it is reduced."),
 )
+
+_ORDERS = dict.fromkeys(("zyx", "xyz", "xzy", "yxz", "yzx", "zxy"), "")
 
 
 def conditioning_options(command: F) -> F:
@@ -33,7 +36,11 @@ def conditioning_options(command: F) -> F:
 
     added: Any = with_settings
     for key, metavar, text in reversed(_OPTIONS):
-        added = option(RECORD, f"--{key.replace('_', '-')}", key, metavar=metavar, help=text)(added)
+        name = f"--{key.replace('_', '-')}"
+        complete = complete_words(_ORDERS) if key == "euler" else None
+        added = option(RECORD, name, key, metavar=metavar, help=text, shell_complete=complete)(
+            added
+        )
     return cast(F, added)
 
 

@@ -10,6 +10,7 @@ import click
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.command import MACHINE, OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_files, complete_targets
 from des_cli.cli.console import Console
 from des_cli.cli.form_options import FormWords, form_of, form_options, hz_option
 from des_cli.cli.options import TABLE_FORMATS, fail_on_option, overwrite_option
@@ -36,8 +37,16 @@ Examples:
   des-coriolis export commands.csv --columns t_ms=time,arm_rad_s,fork_rad --out-separator tab -o -
 """,
 )
-@click.argument("target", metavar="RUN|TABLE")
-@option(OUTPUT, "-o", "--out", metavar="FILE|-", required=True, help="The file, or stdout.")
+@click.argument("target", metavar="RUN|TABLE", shell_complete=complete_targets)
+@option(
+    OUTPUT,
+    "-o",
+    "--out",
+    metavar="FILE|-",
+    required=True,
+    shell_complete=complete_files,
+    help="The file, or stdout.",
+)
 @option(
     OUTPUT,
     "-f",

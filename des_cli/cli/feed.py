@@ -11,6 +11,7 @@ import click
 
 from des_cli.cli.command import MACHINE, OUTPUT, PACE, Command, option
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_targets
 from des_cli.cli.console import Console
 from des_cli.cli.form_options import FormWords, line_options, lines_form
 from des_cli.cli.options import fail_on_option
@@ -39,7 +40,7 @@ Examples:
   des-coriolis feed runs/cobra_felt --at-end hold --hold-s 30 > /dev/ttyUSB0
 """,
 )
-@click.argument("target", metavar="RUN|TABLE")
+@click.argument("target", metavar="RUN|TABLE", shell_complete=complete_targets)
 @option(
     PACE,
     "--hz",

@@ -15,11 +15,13 @@ import click
 from des_cli.batch.job import TableFormat
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.command import ROWS, option
+from des_cli.cli.completion import complete_columns, complete_words
 from des_cli.cli.options import TABLE_FORMATS, existing_folder
 from des_cli.runs_out.forms import (
     COMMANDS,
     ENDINGS,
     PRESETS,
+    SEPARATORS,
     Column,
     Form,
     Kind,
@@ -201,6 +203,7 @@ def _form_options(presets: tuple[str, ...]) -> Callable[[F], F]:
             "out_columns",
             metavar="NAME[=HEADER],...",
             callback=_read_columns,
+            shell_complete=complete_columns,
             help="The columns of the rows, by quantity and unit: t_s,arm_rad_s,fork_deg=Fork.",
         )
         separator = option(
@@ -208,6 +211,7 @@ def _form_options(presets: tuple[str, ...]) -> Callable[[F], F]:
             "--out-separator",
             metavar="SIGN",
             callback=_read_separator,
+            shell_complete=complete_words(dict.fromkeys((",", ";", "|", *SEPARATORS), "")),
             help="What stands between them: ',', ';', '|', tab or space.",
         )
         header = option(ROWS, "--no-header", is_flag=True, help="Write no names above the rows.")

@@ -12,6 +12,7 @@ from des_cli.batch.job import TableFormat
 from des_cli.batch.source import Source
 from des_cli.cli.command import OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_profiles
 from des_cli.cli.options import TABLE_FORMATS
 from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_of
 from des_cli.cli.state_options import in_si, option_name, state_options
@@ -34,7 +35,7 @@ Examples:
   des-coriolis kinematics cobra --format csv > states.csv
 """,
 )
-@click.argument("profile", metavar="[PROFILE]", required=False)
+@click.argument("profile", metavar="[PROFILE]", required=False, shell_complete=complete_profiles)
 @state_options()
 @machine_option
 @setting_options

@@ -8,6 +8,7 @@ import click
 
 from des_cli.cli.command import OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_machines
 from des_cli.cli.options import text_or_json_option
 from des_cli.cli.stdout import write_data
 
@@ -22,7 +23,7 @@ Examples:
   des-coriolis reduce cobra --machine my.yaml
 """,
 )
-@click.argument("machine", metavar="[NAME|FILE]", required=False)
+@click.argument("machine", metavar="[NAME|FILE]", required=False, shell_complete=complete_machines)
 @text_or_json_option("Text is a line a machine, or the YAML of one; json is an object a line.")
 @option(OUTPUT, "--full", is_flag=True, help="Print the Denavit-Hartenberg rows too.")
 @verbosity_options

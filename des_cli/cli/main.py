@@ -59,6 +59,17 @@ class Program(click.Group):
         assert isinstance(command, click.Command)
         return command
 
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[Any]:
+        """Complete a command without importing any, or an option."""
+        from click.shell_completion import CompletionItem
+
+        found = [
+            CompletionItem(name, help=text)
+            for name, text in COMMANDS.items()
+            if name.startswith(incomplete)
+        ]
+        return [*found, *click.Command.shell_complete(self, ctx, incomplete)]
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
         with formatter.section("Commands"):
@@ -77,7 +88,11 @@ class Program(click.Group):
         click's own ``main`` is passed by: it ends a broken pipe with 1.
         """
         name = prog_name or PROGRAM
-        self._main_shell_completion(extra, name, complete_var)
+        if any(key.endswith("_COMPLETE") for key in os.environ):
+            from des_cli.cli.completion_shells import register_shells
+
+            register_shells()
+            self._main_shell_completion(extra, name, complete_var)
         console = Console()
         words = list(sys.argv[1:] if args is None else args)
         # A command line may be wrong before its options count.

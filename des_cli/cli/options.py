@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 import click
 
 from des_cli.cli.command import BATCH, OUTPUT, REDUCTION, option
+from des_cli.cli.completion import complete_budget
 from des_cli.model.metric import STUDY_METRIC, metric_named
 from des_cli.model.notice import HARMS
 from des_cli.profiles_in.setting import Setting, value_of_option
@@ -149,6 +150,14 @@ _REPEATABLE = ("budget", "optimise")
 _SECONDS = ("lead_in", "lead_out")
 
 
+def reduction_words() -> dict[str, tuple[str, ...]]:
+    """Return the keys of ``reduction:`` that have an option, each with the words it may be."""
+    return {
+        f"{key}_s" if key in _SECONDS else key: tuple(getattr(kind, "choices", ()))
+        for key, kind, _ in _REDUCTION
+    }
+
+
 def reduction_options(command: F) -> F:
     """Add an option for each common key of ``reduction:``; see `reduction_settings`."""
     return reduction_options_without()(command)
@@ -167,6 +176,8 @@ def reduction_options_without(*keys: str) -> Callable[[F], F]:
                 text = f"{text.removesuffix('.')}; repeatable."
             if isinstance(kind, click.IntRange):
                 typed["metavar"] = "N"
+            if key == "budget":
+                typed["shell_complete"] = complete_budget
             name = f"--{key.replace('_', '-')}"
             command = option(REDUCTION, name, key, help=text, **typed)(command)
         return command

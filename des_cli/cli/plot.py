@@ -10,6 +10,7 @@ import click
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.command import OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_files, complete_runs, complete_words
 from des_cli.cli.console import Console
 from des_cli.cli.options import overwrite_option
 from des_cli.cli.outputs import files_held
@@ -52,12 +53,13 @@ Figures:
 """
     + "\n".join(f"  {name:<20} {words}" for name, words in FIGURES.items()),
 )
-@click.argument("run")
+@click.argument("run", shell_complete=complete_runs)
 @option(
     OUTPUT,
     "--figure",
     "name",
     type=click.Choice(list(FIGURES)),
+    shell_complete=complete_words(FIGURES),
     default="felt",
     show_default=True,
     metavar="NAME",
@@ -68,6 +70,7 @@ Figures:
     "-o",
     "--out",
     metavar="FILE|-",
+    shell_complete=complete_files,
     help="Where it goes; its ending is the format.  [default: the figure's name, as SVG]",
 )
 @option(OUTPUT, "-f", "--format", "form", type=click.Choice(FORMATS), help="Of standard output.")

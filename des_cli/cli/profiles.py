@@ -9,6 +9,7 @@ import click
 
 from des_cli.cli.command import Command
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_builtin
 from des_cli.cli.options import text_or_json_option
 from des_cli.cli.stdout import write_data
 
@@ -22,7 +23,7 @@ Examples:
   des-coriolis profiles cobra > my.yaml
 """,
 )
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=complete_builtin)
 @text_or_json_option("Of the list; json prints one object a line.")
 @verbosity_options
 def profiles(name: str | None, form: str) -> None:

@@ -11,6 +11,7 @@ from des_cli.batch.job import Job, Output
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.command import BATCH, CLUSTER, OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_files, complete_folders, complete_grid
 from des_cli.cli.console import Console
 from des_cli.cli.form_options import (
     FormWords,
@@ -64,6 +65,7 @@ Examples:
     "-o",
     "--out",
     metavar="DIR|FILE|-",
+    shell_complete=complete_files,
     help="The run folder (for several profiles: the folder of their run folders), or a file "
     "of the command table alone, or stdout.  [default: runs/NAME]",
 )
@@ -88,12 +90,14 @@ Examples:
     BATCH,
     "--store",
     metavar="DIR",
+    shell_complete=complete_folders,
     help="Also add a row a run to this store of Parquet files; report --store reads it.",
 )
 @option(
     BATCH,
     "--grid",
     metavar="KEY=V,V...",
+    shell_complete=complete_grid,
     multiple=True,
     help="Reduce each profile with each of these values of a key, such as r2=0.2,1; repeatable: "
     "with every combination.",

@@ -9,6 +9,7 @@ import click
 from des_cli.batch.source import STANDARD_STREAM
 from des_cli.cli.command import OUTPUT, STORE, Command, option
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_files, complete_folders, complete_runs, complete_where
 from des_cli.cli.console import Console
 from des_cli.cli.options import DEFAULT_RUNS, overwrite_option
 from des_cli.cli.outputs import files_held
@@ -27,20 +28,28 @@ Examples:
   des-coriolis report --store study --where "seat_g_rms_error_g <= 0.05"
 """,
 )
-@click.argument("runs", metavar="[RUN]...", nargs=-1)
+@click.argument("runs", metavar="[RUN]...", nargs=-1, shell_complete=complete_runs)
 @option(
     OUTPUT,
     "-o",
     "--out",
     metavar="FILE|-",
+    shell_complete=complete_files,
     help="The page, or the rows of a store as CSV.  [default: report.html, or stdout]",
 )
 @overwrite_option("Replace a file that exists.")
-@option(STORE, "--store", metavar="DIR", help="Instead: list the runs of a store.")
+@option(
+    STORE,
+    "--store",
+    metavar="DIR",
+    shell_complete=complete_folders,
+    help="Instead: list the runs of a store.",
+)
 @option(
     STORE,
     "--where",
     metavar="CONDITION",
+    shell_complete=complete_where,
     help="Of a store only these, such as: seat_g_rms_error_g <= 0.05 and status = converged",
 )
 @verbosity_options

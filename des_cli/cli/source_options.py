@@ -11,10 +11,17 @@ import click
 
 from des_cli.batch.source import STANDARD_STREAM, Source
 from des_cli.cli.command import PROFILE, RECORD, option
+from des_cli.cli.completion import (
+    complete_machines,
+    complete_profiles,
+    complete_setting,
+    complete_words,
+)
 from des_cli.cli.conditioning_options import conditioning_options
 from des_cli.errors import Complaint, FileAccessError
 from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
 from des_cli.profiles_in.setting import AnySetting, Setting
+from des_cli.runs_out.forms import SEPARATORS
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -23,7 +30,13 @@ _GAP = "des_cli.gap"
 
 def profile_argument(command: F) -> F:
     """Add ``PROFILE...``."""
-    return click.argument("profiles", metavar="PROFILE...", nargs=-1, required=True)(command)
+    return click.argument(
+        "profiles",
+        metavar="PROFILE...",
+        nargs=-1,
+        required=True,
+        shell_complete=complete_profiles,
+    )(command)
 
 
 def setting_options(command: F) -> F:
@@ -38,6 +51,7 @@ def setting_options(command: F) -> F:
         metavar="KEY=VALUE",
         multiple=True,
         callback=_with_gap,
+        shell_complete=complete_setting,
         help="Override a key of the profile by its path, such as reduction.r2=0.2; repeatable.",
     )
     columns = option(
@@ -64,6 +78,7 @@ def setting_options(command: F) -> F:
         "--separator",
         metavar="SIGN",
         callback=_read_separator,
+        shell_complete=complete_words(dict.fromkeys((",", ";", "|", *SEPARATORS), "")),
         help="What stands between the columns of a CSV profile: ',', ';', '|', tab or space.",
     )
     decimal = option(
@@ -116,6 +131,7 @@ def machine_option_below(heading: str) -> Callable[[F], F]:
         "--machine",
         metavar="NAME|FILE",
         callback=_require_name,
+        shell_complete=complete_machines,
         help="A built-in machine or a YAML file, instead of the profile's.  [default: des]",
     )
 

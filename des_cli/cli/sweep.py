@@ -11,6 +11,7 @@ from des_cli.batch.job import TableFormat
 from des_cli.batch.source import STANDARD_STREAM, Source
 from des_cli.cli.command import CURVE, OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_budget, complete_files, complete_list, complete_profiles
 from des_cli.cli.console import VERBOSE, Console
 from des_cli.cli.options import (
     TABLE_FORMATS,
@@ -22,6 +23,7 @@ from des_cli.cli.options import (
 from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_of
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.sweep_options import (
+    CONTROLS,
     DEFAULT_BUDGETS,
     DEFAULT_CONTROLS,
     DEFAULT_METRIC,
@@ -57,12 +59,13 @@ Examples:
     --budget {SEAT_G_ERROR}=0.05
 """,
 )
-@click.argument("profile", metavar="PROFILE")
+@click.argument("profile", metavar="PROFILE", shell_complete=complete_profiles)
 @option(
     CURVE,
     "--budgets",
     metavar="MOST,...",
     callback=read_swept_budgets,
+    shell_complete=complete_budget,
     help=f"Budgets of {DEFAULT_METRIC}, or METRIC=MOST,... of another fidelity metric; "
     "the profile's budgets on other metrics stay.  [default: 0.01,0.02,0.05,0.1]",
 )
@@ -80,6 +83,7 @@ Examples:
     default=",".join(DEFAULT_CONTROLS),
     show_default=True,
     callback=read_controls,
+    shell_complete=complete_list(CONTROLS),
     help="A curve for each: free joints, one factor for all, or one each.",
 )
 @machine_option
@@ -90,6 +94,7 @@ Examples:
     "-o",
     "--out",
     metavar="FILE|-",
+    shell_complete=complete_files,
     help="Where the points go.  [default: stdout, as aligned text on a terminal]",
 )
 @option(
@@ -100,7 +105,13 @@ Examples:
     type=click.Choice(TABLE_FORMATS),
     help="Format of the points.  [default: by the suffix of FILE, or csv]",
 )
-@option(OUTPUT, "--plot", metavar="FILE.png", help="Draw the curve into this file.")
+@option(
+    OUTPUT,
+    "--plot",
+    metavar="FILE.png",
+    shell_complete=complete_files,
+    help="Draw the curve into this file.",
+)
 @jobs_option("Points at a time; 0 is one for each CPU.")
 @overwrite_option("Replace files that exist.")
 @verbosity_options

@@ -10,6 +10,7 @@ import click
 
 from des_cli.cli.command import MACHINE, Command
 from des_cli.cli.common_options import verbosity_options
+from des_cli.cli.completion import complete_targets
 from des_cli.cli.console import Console
 from des_cli.cli.options import fail_on_option, text_or_json_option
 from des_cli.cli.source_options import machine_option_below, read_stdin
@@ -32,7 +33,13 @@ Examples:
   des-coriolis verify runs/* --fail-on notice --format json
 """,
 )
-@click.argument("targets", metavar="RUN|TABLE...", nargs=-1, required=True)
+@click.argument(
+    "targets",
+    metavar="RUN|TABLE...",
+    nargs=-1,
+    required=True,
+    shell_complete=complete_targets,
+)
 @machine_option_below(MACHINE)
 @state_options(STANDING, MACHINE)
 @fail_on_option
