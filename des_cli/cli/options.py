@@ -118,7 +118,7 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
         "budget",
         "METRIC=MOST",
         "The most reduction of the cross-coupling for at most so much of a fidelity metric, inside "
-        f"the machine's limits; a number alone is {STUDY_METRIC}.",
+        f"the machine's limits; 5% for a share; a number alone is {STUDY_METRIC}.",
     ),
     (
         "objective",
@@ -148,6 +148,8 @@ _REDUCTION: tuple[tuple[str, Any, str], ...] = (
 )
 _REPEATABLE = ("budget", "optimise")
 _SECONDS = ("lead_in", "lead_out")
+_PERCENT = ("allow_change",)
+"""Shares, which may be given as percentages."""
 
 
 def reduction_words() -> dict[str, tuple[str, ...]]:
@@ -203,6 +205,8 @@ def reduction_settings(values: Mapping[str, Any]) -> tuple[Setting, ...]:
         if value is not None and value != ():
             option = f"--{key.replace('_', '-')}"
             said = option if key in _REPEATABLE else f"{option} {value}"
+            if key in _PERCENT:
+                value = share_text(value)
             given[key] = value_of_option(str(value)) if isinstance(kind, str) else value, said
     if "budget" in given:
         if weights := [f"--{key}" for key in ("r2", "tracking") if key in given]:
@@ -266,11 +270,56 @@ def without_percent(metric: str, most: str) -> str:
         return most
     known = metric_named(metric)
     if known is not None and not known.relative:
-        raise click.UsageError(f"{metric} is no share: give it in {known.unit}, not as {most!r}.")
+        raise click.UsageError(
+            f"{metric}={most} is a percentage of what is no share: give it in {known.unit}."
+        )
+    return share_text(most)
+
+
+def share_text(text: str) -> str:
+    """Return a share as a plain number where it is a percentage: ``5%`` is ``0.05``.
+
+    >>> [share_text(text) for text in ("12.3%", "0.1 %", "0.3", "half%")]
+    ['0.123', '0.001', '0.3', 'half%']
+    """
+    from decimal import Decimal, InvalidOperation
+
+    number = text.strip().removesuffix("%").rstrip()
+    if number == text.strip() or "_" in number:
+        return text
     try:
-        return repr(float(most.removesuffix("%")) / 100.0)
-    except ValueError:
-        return most  # the schema says what is wrong with it
+        # Not a quotient of doubles: 12.3 / 100 is not the double that 0.123 is.
+        return repr(float(Decimal(number).scaleb(-2)))
+    except InvalidOperation:
+        return text  # the schema says what is wrong with it
+
+
+_BUDGET, _SHARES = "reduction.budget", ("reduction.allow_change",)
+
+
+def plain_setting(text: str) -> str:
+    """Return the text of a ``--set`` with a plain number where it gives a share as a percentage.
+
+    Raises
+    ------
+    click.UsageError
+        If it is a budget on what is no share.
+
+    >>> plain_setting("reduction.budget=5%") == "reduction.budget=0.05"
+    True
+    >>> plain_setting("reduction.allow_change=30%"), plain_setting("name=5%")
+    ('reduction.allow_change=0.3', 'name=5%')
+    """
+    key, equals, value = text.partition("=")
+    path, value = key.strip(), value.strip()
+    if not value.endswith("%"):
+        return text
+    if path in _SHARES:
+        return f"{key}{equals}{share_text(value)}"
+    if path == _BUDGET or path.startswith(f"{_BUDGET}."):
+        metric = path[len(_BUDGET) + 1 :] or STUDY_METRIC
+        return f"{key}{equals}{without_percent(metric, value)}"
+    return text
 
 
 def existing_folder(path: str) -> bool:

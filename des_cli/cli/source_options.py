@@ -18,6 +18,7 @@ from des_cli.cli.completion import (
     complete_words,
 )
 from des_cli.cli.conditioning_options import conditioning_options
+from des_cli.cli.options import plain_setting
 from des_cli.errors import Complaint, FileAccessError
 from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
 from des_cli.profiles_in.setting import AnySetting, Setting
@@ -217,6 +218,7 @@ def _with_gap(
     for value in values:
         if not value.partition("=")[0].strip() or "=" not in value:
             raise click.BadParameter(f"{value!r} is not KEY=VALUE, such as reduction.r2=0.2.")
+    values = tuple(map(plain_setting, values))
     gap = context.meta.get(_GAP)
     return values if gap is None else (*values, Setting("gap", gap, f"--gap {gap}"))
 

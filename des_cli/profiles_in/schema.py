@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
 from des_cli.model.machine import Joint
@@ -187,7 +187,14 @@ Weight = Annotated[
 ]
 
 
-Most = Annotated[Number, Field(ge=1e-9, le=1e12)]
+def _refuse_percent(value: Any) -> Any:
+    """Say how a percentage is written in a file, where the unit of a number is in its key."""
+    if isinstance(value, str) and value.endswith("%"):
+        raise fault(f"must be a number, is {shown(value)}; a share of 5 % is written 0.05")
+    return value
+
+
+Most = Annotated[Number, Field(ge=1e-9, le=1e12), BeforeValidator(_refuse_percent)]
 """Of a budget: a smaller one is rounding, and its square need not be a number."""
 
 

@@ -7,7 +7,7 @@ import click
 import pytest
 
 from des_cli.batch.job import TableFormat
-from des_cli.cli.options import _REDUCTION, TABLE_FORMATS, reduction_settings
+from des_cli.cli.options import _REDUCTION, TABLE_FORMATS, plain_setting, reduction_settings
 from des_cli.cli.reduce import reduce
 from des_cli.model import profile
 from des_cli.profiles_in.setting import Setting
@@ -76,7 +76,10 @@ def test_a_budget_becomes_a_setting_inside_the_limits() -> None:
     ("budgets", "words"),
     [
         (("5%", "joint_deviation_relative=0.1"), "twice for joint_deviation_relative"),
-        (("seat_g_rms_error_g=5%",), "seat_g_rms_error_g is no share: give it in g"),
+        (
+            ("seat_g_rms_error_g=5%",),
+            "seat_g_rms_error_g=5% is .* no share: give it in g",
+        ),
         (("attitude_error_max_deg=5 %",), "give it in deg"),
     ],
 )
@@ -155,3 +158,53 @@ def test_a_message_names_the_option_and_not_what_stands_for_it(
     result = invoke("validate", small, *options)
     assert result.exit_code == 3
     assert any(each.startswith(line) for each in result.stderr.splitlines()), result.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        ("reduction.budget=5%", "reduction.budget=0.05"),
+        ("reduction.budget.seat_rate_deviation_relative = 12.3 %", "=0.123"),
+        ("reduction.allow_change=30%", "=0.3"),
+        ("reduction.budget=1_0%", "=1_0%"),
+        ("reduction.budget=%", "=%"),
+        ("reduction.budget=0.05", "=0.05"),
+        ("joints.fork_deg=t%", "joints.fork_deg=t%"),
+    ],
+)
+def test_a_share_may_be_set_as_a_percentage(text: str, plain: str) -> None:
+    assert plain_setting(text).endswith(plain)
+
+
+@pytest.mark.parametrize(
+    "args",
+    [
+        ("--set", "reduction.budget.seat_g_rms_error_g=5%"),
+        ("--budget", "seat_g_rms_error_g=5%"),
+        ("--grid", "budget.seat_g_rms_error_g=5%"),
+    ],
+)
+def test_what_is_no_share_has_no_percentage(invoke, small: str, args: tuple[str, str]) -> None:
+    result = invoke("reduce", small, *args)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "seat_g_rms_error_g=5% is a percentage of what is no share" in result.stderr
+    assert "give it in g." in result.stderr
+
+
+def test_a_percentage_is_the_share_that_it_means(invoke, write_profile) -> None:
+    name = write_profile("felt", r2="1").name
+    said = {}
+    for most in ("5%", "0.05"):
+        options = ("--set", f"reduction.budget={most}", "--allow-change", "30%")
+        result = invoke("validate", name, *options, "--format", "json")
+        assert result.exit_code == 0, result.stderr
+        said[most] = json.loads(result.stdout)
+    assert said["5%"]["budget"] == {"joint_deviation_relative": 0.05}
+
+
+def test_a_file_says_how_it_wants_a_share(invoke, write_profile) -> None:
+    result = invoke("validate", write_profile("felt", r2="1\n  budget: 5%").name)
+    assert result.exit_code == 3
+    assert "reduction.budget: must be a number, is '5%'; a share of 5 % is written 0.05" in (
+        result.stderr
+    )
