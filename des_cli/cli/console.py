@@ -76,7 +76,7 @@ class Console:
 
     def style(self, text: str, style: str) -> str:
         """Return the text in a style of the table, for this console to print."""
-        if not self.color or self.log_format == "json":
+        if not self.color or self.log_format == "json" or not _STYLES[style]:
             return text
         codes = click.style("\0", **_STYLES[style]).split("\0")  # type: ignore[arg-type]
         before, after = (code.replace("\x1b", self._escape) for code in codes)

@@ -6,6 +6,8 @@ import sys
 
 import click
 
+from des_cli.cli.lines import wrapped
+from des_cli.cli.status_line import columns_of
 from des_cli.cli.terminal import printable
 from des_cli.errors import Complaint, FileAccessError
 
@@ -34,6 +36,12 @@ def write_data(data: bytes | str) -> None:
 def write_line(text: str) -> None:
     """Write words for a person on a line, as `write_data` does."""
     write_data(printable(text) + "\n")
+
+
+def write_words(text: str) -> None:
+    """Write a line of words, on a terminal as lines of its width."""
+    for line in wrapped(printable(text), columns_of(sys.stdout)):
+        write_line(line)
 
 
 def refuse_binary_on_terminal(table_format: str | None) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, cast
 
 import click
@@ -21,6 +23,7 @@ from des_cli.cli.options import (
     reduction_settings,
 )
 from des_cli.cli.source_options import machine_option, read_stdin, setting_options, source_of
+from des_cli.cli.status_line import columns_of
 from des_cli.cli.stdout import refuse_binary_on_terminal, write_data
 from des_cli.cli.sweep_options import (
     CONTROLS,
@@ -257,10 +260,11 @@ def _tell(console: Console, result: PointResult, live: bool) -> None:
     for point in result.points:
         if point.algorithm != "optimum" or point.status == "failed":
             continue
+        facts = {key: value for key, value in asdict(point).items() if key not in ("kind", "text")}
         if point.solved:
-            console.say(point_line(point))
+            console.say(point_line(point), "point", **facts)
         else:
-            console.warn([point_line(point)])
+            console.warn([point_line(point)], kind="point", **facts)
 
 
 def _write(
@@ -269,7 +273,7 @@ def _write(
     if form == "text":
         from des_cli.cli.tradeoff_text import points_text
 
-        write_data(points_text(points, about))
+        write_data(points_text(points, about, columns_of(sys.stdout)))
         return
     from des_cli.runs_out.atomic import write_file
     from des_cli.runs_out.point_table import encode_points

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
+from des_cli.cli.lines import wrapped
 from des_cli.model.metric import (
     ANGULAR_ACCELERATION_ERROR,
     ATTITUDE_ERROR,
@@ -32,6 +33,8 @@ _COLUMNS = (
     ("turn [deg]", ATTITUDE_ERROR, CONSOLE.number),
 )
 _WIDTH = 11
+_ENDING = "  limits  status"
+_ENDING_WIDTH = len("  limits  not executable")
 _TITLES = {
     "report-sweep": "study's single sweep",
     "constant-p": "constant p",
@@ -41,18 +44,25 @@ _TITLES = {
 }
 
 
-def points_text(points: Sequence[TradePoint], about: str) -> str:
+def points_text(points: Sequence[TradePoint], about: str, columns: int | None = None) -> str:
     """Write a table for each curve: reductions, then what they cost.
 
     A minus before a reduction is a growth.
+
+    Parameters
+    ----------
+    points : sequence of TradePoint
+    about : str
+    columns : int, optional
+        Of the terminal: a table that is wider goes on below, with its first column again.
     """
-    lines = [
-        about,
+    what = (
         "reduction of the cross-coupling; deviation of joints, seat rate, seat G; total angular "
-        f"acceleration α at the seat [rad/s²]{_before(points)}; attitude",
-    ]
+        f"acceleration α at the seat [rad/s²]{_before(points)}; attitude"
+    )
+    lines = [about, *wrapped(what, columns, 0)]
     for title, curve in groupby(points, key=_title):
-        lines += ["", *_curve(title, list(curve))]
+        lines += ["", *_curve(title, list(curve), columns)]
     return "\n".join(line.rstrip() for line in lines) + "\n"
 
 
@@ -89,20 +99,39 @@ def _title(point: TradePoint) -> str:
     return _TITLES[point.control if point.algorithm == "optimum" else point.algorithm]
 
 
-def _curve(title: str, points: Sequence[TradePoint]) -> Iterator[str]:
+def _curve(title: str, points: Sequence[TradePoint], columns: int | None) -> Iterator[str]:
     yield title
     swept = _head(points[0].swept)
     first = max(len(swept), 10)
-    heads = "".join(f"{head:>{_WIDTH}}" for head, _, _ in _COLUMNS)
-    yield f"  {swept:>{first}}{heads}  limits  status"
-    for point in points:
-        value = f"  {point.value:>{first}g}"
-        if point.objective_reduction is None and point.limits_ok is None:
-            yield f"{value}  {point.status}: {point.message}"
-            continue
-        cells = "".join(f"{write(getattr(point, key)):>{_WIDTH}}" for _, key, write in _COLUMNS)
-        limits = "kept" if point.limits_ok else "broken"
-        yield f"{value}{cells}  {limits:<6}  {point.status}"
+    for at, (begin, end, ending) in enumerate(_parts(first + 2, columns)):
+        shown = _COLUMNS[begin:end]
+        heads = "".join(f"{head:>{_WIDTH}}" for head, _, _ in shown)
+        yield f"  {swept:>{first}}{heads}{_ENDING if ending else ''}"
+        for point in points:
+            value = f"  {point.value:>{first}g}"
+            if point.objective_reduction is None and point.limits_ok is None:
+                if at == 0:
+                    yield f"{value}  {point.status}: {point.message}"
+                continue
+            cells = "".join(f"{write(getattr(point, key)):>{_WIDTH}}" for _, key, write in shown)
+            limits = "kept" if point.limits_ok else "broken"
+            yield f"{value}{cells}" + (f"  {limits:<6}  {point.status}" if ending else "")
+
+
+def _parts(first: int, columns: int | None) -> Iterator[tuple[int, int, bool]]:
+    """Yield which columns stand beside each other, and whether limits and status do too."""
+    count = len(_COLUMNS)
+    if columns is None or first + count * _WIDTH + _ENDING_WIDTH <= columns:
+        yield 0, count, True
+        return
+    most = max(1, (columns - first) // _WIDTH)
+    with_ending = max(0, (columns - first - _ENDING_WIDTH) // _WIDTH)
+    begin = 0
+    while count - begin > with_ending:
+        end = min(begin + most, count)
+        yield begin, end, False
+        begin = end
+    yield begin, count, True
 
 
 def _head(swept: str) -> str:

@@ -19,7 +19,7 @@ from des_cli.cli.source_options import (
     setting_options,
     source_of,
 )
-from des_cli.cli.stdout import write_line
+from des_cli.cli.stdout import write_line, write_words
 from des_cli.errors import DesError, ExitCode, Failure
 from des_cli.profiles_in.caps import Caps
 from des_cli.profiles_in.setting import AnySetting
@@ -100,7 +100,11 @@ def validate(
                 for remark in profile.remarks:
                     console.say(f"{source.name}: {remark}", "notice", profile=source.name)
                 facts = understood(source.name, profile)
-                _write(console, json.dumps(facts) if form == "json" else _line(facts))
+                if form == "json":
+                    _write(console, json.dumps(facts))
+                else:
+                    with console.aside():
+                        write_words(_line(facts))
             line.advance()
     # Several kinds of failure have no code in common but that of a batch.
     return codes.pop() if len(codes) == 1 else ExitCode.FILE if codes else ExitCode.DONE

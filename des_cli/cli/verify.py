@@ -15,7 +15,7 @@ from des_cli.cli.console import Console
 from des_cli.cli.options import fail_on_option, text_or_json_option
 from des_cli.cli.source_options import machine_option_below, read_stdin
 from des_cli.cli.state_options import in_si, state_options
-from des_cli.cli.stdout import write_line
+from des_cli.cli.stdout import write_line, write_words
 from des_cli.cli.targets import LARGEST, STANDING, check_target, tell_verdict
 from des_cli.errors import DesError, ExitCode, Failure
 
@@ -85,7 +85,7 @@ def verify(
         else:
             codes.append(tell_verdict(console, target, verdict, fail_on))
             if form == "text" and codes[-1] == ExitCode.DONE:
-                write_line(_line(target, verdict))
+                write_words(_line(target, verdict))
             facts = _facts(verdict, codes[-1])
         if form == "json":
             write_line(json.dumps({"target": target, "ok": not facts["exit_code"], **facts}))

@@ -31,3 +31,17 @@ def test_text_is_aligned_and_says_why_there_is_nothing() -> None:
     )
     assert lines[-1].endswith("1  iteration-limit: too few steps")
     assert point_line(GONE) == "scalar, r2 1: iteration-limit: too few steps"
+
+
+def test_a_table_that_is_wider_than_the_terminal_goes_on_below() -> None:
+    whole = points_text([POINT, GONE], "cobra").splitlines()
+    narrow = points_text([POINT, GONE], "cobra", 80).splitlines()
+    assert all(len(line) <= 80 for line in narrow)
+    assert " ".join(narrow).count("limits  status") == 1
+    heads = [line.split() for line in narrow if line.split()[:1] == ["budget"]]
+    assert [each[1] for each in heads] == ["objective", "joints", "turn"]
+    assert [word for each in heads for word in each[1:]] == whole[4].split()[1:]
+    values = [line.split()[1:] for line in narrow if line.split()[:1] == [f"{POINT.value:g}"]]
+    assert [word for each in values for word in each] == whole[5].split()[1:]
+    assert sum("too few steps" in line for line in narrow) == 1
+    assert points_text([POINT, GONE], "cobra", 300).splitlines() == whole
