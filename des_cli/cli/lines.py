@@ -16,14 +16,15 @@ HANG = 4
 _NARROWEST = 40
 """Below so many columns words are left to the terminal."""
 
-_TOGETHER = re.compile(
+# Patterns are compiled when something is said: --help need not wait for it.
+_TOGETHER = (
     r"(?<=\d) (?=(?:%|g|deg|rad|s|rpm|Hz|times)(?:[/,;:)\s]|$))"  # a number and its unit
     r"| (?=-> )|(?<=->) "  # before and after
     r"|(?<=\bt) (?==)|(?<=t =) "
     r"|(?<= g) (?=rms)|(?<=%) (?=less|more)"
 )
-_PARTS = re.compile(r"(?<=[,;]) ")
-_STYLE = re.compile(r"\x1b\[[\d;]*m")
+_PARTS = r"(?<=[,;]) "
+_STYLE = r"\x1b\[[\d;]*m"
 
 
 def wrapped(
@@ -65,15 +66,15 @@ def wrapped(
 
 def _words(text: str, widest: int) -> Iterator[str]:
     """Yield what is to stay on a line: words, and parts of a list of at most so many columns."""
-    for part in _PARTS.split(text):
+    for part in re.split(_PARTS, text):
         if _width(part) <= widest:
             yield part.replace(" ", "\0")
         else:
-            yield from _TOGETHER.sub("\0", part).split(" ")
+            yield from re.sub(_TOGETHER, "\0", part).split(" ")
 
 
 def _width(text: str) -> int:
-    return len(_STYLE.sub("", text))
+    return len(re.sub(_STYLE, "", text))
 
 
 def json_line(level: Level, kind: str, text: str, facts: Mapping[str, Any]) -> str:

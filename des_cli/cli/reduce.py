@@ -29,7 +29,6 @@ from des_cli.cli.options import (
     reduction_options,
     reduction_settings,
 )
-from des_cli.cli.reduce_batch import all_jobs, run_batch
 from des_cli.cli.source_options import (
     machine_option,
     profile_argument,
@@ -142,6 +141,9 @@ def reduce(
     exists. Options that name a key of the profile's "reduction:" override it,
     and --set.
     """
+    # What sums runs up is not for --help, nor for a shell that completes.
+    from des_cli.cli.reduce_batch import all_jobs, run_batch
+
     several = len(profiles) > 1 or bool(grid)
     form = form_of(out, table_format, words, hz)
     if form is not None and several:
