@@ -102,3 +102,20 @@ def test_a_log_has_one_header_until_it_ends(
     assert [line.split()[0] for line in lines] == ["iter", "3", "3", "iter", "3", "3"]
     assert len(lines[0]) == len(lines[1]) == len(iteration_line(STEP))
     assert iteration_line(STEP).split() == ["3", "0.25", "1.000e-06", "2.000e-03", "0.5000"]
+
+
+def test_on_a_terminal_words_are_wrapped_and_tables_are_not(
+    console: Console, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("des_cli.cli.console.columns_of", lambda stream: 40)
+    console.choose_color("always")
+    console.row("seat G", "tilt 4 deg at most, peak Gy 0.3 -> 0.4 g", "good")
+    console.row("notice", "what was said of a \x1b[31mforged\nname", "warning", kind="notice")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[:2] == [
+        "  seat G         \x1b[32mtilt 4 deg at most,",
+        "                 peak Gy 0.3 -> 0.4 g\x1b[0m",
+    ]
+    assert "\\x1b[31mforged\\nname" in " ".join(lines[2:])
+    console.table("a " * 30)
+    assert len(capsys.readouterr().err.splitlines()) == 1
