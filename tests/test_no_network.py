@@ -39,6 +39,7 @@ for line in (
     "schema",
     "machines",
     "profiles",
+    "new",
 ):
     try:
         program.main(line.split())

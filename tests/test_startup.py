@@ -47,6 +47,7 @@ def imported(watched: set[str], *args: str, cwd: Path, env: dict[str, str]) -> s
         ["sweep", "--help"],
         ["validate", "--help"],
         ["verify", "--help"],
+        ["new", "--help"],
         ["profiles", "--help"],
         ["kinematics", "--help"],
         ["machines", "--help"],

@@ -34,6 +34,7 @@ COMMANDS = {
     "feed": "Send the rows of a run or a command table, each at its time.",
     "export": "Write a run or a command table in the form of another program.",
     "kinematics": "Show the kinematics of a state, or of a profile's motion.",
+    "new": "Write a commented profile to start from.",
     "profiles": "List the built-in profiles, or print one.",
     "machines": "List the built-in machines, or print one.",
     "schema": "Print the JSON Schema of YAML profiles.",

@@ -46,7 +46,8 @@ _NAME_BYTES = 200
 _RESERVED = re.compile(r"(con|prn|aux|nul|(com|lpt)[0-9¹²³])(?: *\..*)?", re.IGNORECASE)
 
 
-def _check_name(name: str) -> str:
+def check_name(name: str) -> str:
+    """Return a profile's name if a folder may be named after it; else raise `fault`'s error."""
     if not _NAME.fullmatch(name) or len(name.encode()) > _NAME_BYTES:
         raise fault(
             "must be 1 to 100 letters, digits, spaces and . , + - _ ( ), "
@@ -274,7 +275,7 @@ class ProfileSettings(Section):
         "g": "is for profiles in YAML; what belongs to a recorded G, such as washout_s, is below "
         "samples"
     }
-    name: Annotated[str, Field(strict=True), AfterValidator(_check_name)] = OMITTED
+    name: Annotated[str, Field(strict=True), AfterValidator(check_name)] = OMITTED
     machine: MachineChoice = DEFAULT_MACHINE
     seat: Seat = OMITTED
     initial: Initial = OMITTED
