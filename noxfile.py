@@ -43,8 +43,15 @@ def types(session: nox.Session) -> None:
 
 @nox.session
 def docs(session: nox.Session) -> None:
-    """Links, commands and options of the pages."""
+    """Links, commands, options, keys and columns of the pages."""
     session.run(sys.executable, "scripts/check_docs.py")
+
+
+@nox.session
+def site(session: nox.Session) -> None:
+    """Build the documentation as a site, in build/site; a warning fails."""
+    folders = ["-c", "docs", "-d", "build/doctrees", ".", "build/site"]
+    _module(session, "sphinx", "--fail-on-warning", "--keep-going", "--quiet", *folders)
 
 
 @nox.session

@@ -2,8 +2,10 @@
 
 Relative links resolve, headings that links point at exist, every command of a
 ``console`` block exists with its options, every command has a section in
-``docs/cli.md`` that names each of its options, the tables of ``docs/architecture.md``
-name the modules of their rooms, and sessions of nox that pages name exist.
+``docs/cli.md`` that names each of its options and figures, the tables of
+``docs/architecture.md`` name the modules of their rooms, sessions of nox that pages name
+exist, ``docs/formats.md`` names every key of a profile and of a machine, every preset and
+every exit code, and the pages of ``docs/reference`` are what ``reference.py`` writes.
 """
 
 from __future__ import annotations
@@ -14,13 +16,22 @@ import shlex
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
+from reference import pages as written_pages
+from reference import stale
 
 from des_cli.cli.main import COMMANDS, PROGRAM, program
+from des_cli.cli.plot import FIGURES
+from des_cli.errors import ExitCode
+from des_cli.profiles_in.schema import profile_json_schema
+from des_cli.runs_out.forms import PRESETS
+from des_cli.units import split_unit
 
 ROOT = Path(__file__).resolve().parent.parent
 CLI_PAGE = ROOT / "docs" / "cli.md"
+FORMATS = ROOT / "docs" / "formats.md"
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 
 FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -40,10 +51,12 @@ def main() -> int:
         findings += [f"{page.relative_to(ROOT)}: {what}" for what in _findings(page, text)]
     findings += [f"{CLI_PAGE.relative_to(ROOT)}: {what}" for what in _undocumented()]
     findings += [f"{ARCHITECTURE.relative_to(ROOT)}: {what}" for what in _misplaced()]
+    findings += [f"{FORMATS.relative_to(ROOT)}: {what}" for what in _unnamed()]
+    findings += stale(written_pages())
     for finding in findings:
         print(finding, file=sys.stderr)
     if not findings:
-        print(f"{len(pages)} pages: links, commands, options and modules are right")
+        print(f"{len(pages)} pages: links, commands, options, keys, columns and modules are right")
     return bool(findings)
 
 
@@ -125,6 +138,38 @@ def _undocumented() -> Iterator[str]:
         for option in sorted(_options(command)):
             if option.startswith("--") and f"`{option}" not in said:
                 yield f"'## {name}' does not name `{option}`"
+    for name in FIGURES:
+        if f"`{name}`" not in sections["plot"]:
+            yield f"'## plot' does not name the figure `{name}`"
+
+
+def _unnamed() -> Iterator[str]:
+    """Yield what docs/formats.md does not say of what may stand in a file."""
+    text = FORMATS.read_text(encoding="utf-8")
+    quoted = [block for _, block in FENCE.findall(text)]
+    quoted += re.findall(r"`([^`\n]+)`", FENCE.sub("", text))
+    # Any unit of the quantity may stand where a key is named with one.
+    named = {split_unit(word)[0] for words in quoted for word in re.findall(r"\w+", words)}
+    for key in sorted(_keys(profile_json_schema())):
+        if split_unit(key)[0] not in named:
+            yield f"does not name the key `{key}`"
+    for preset in PRESETS:
+        if f"| `{preset}` |" not in text:
+            yield f"does not name the preset `{preset}`"
+    codes = text.partition("\n## Exit codes\n")[2]
+    for code in ExitCode:
+        if f"\n| {int(code)} |" not in codes:
+            yield f"does not name the exit code {int(code)}"
+
+
+def _keys(schema: Any) -> set[str]:
+    """Return the names of all properties in a JSON Schema, wherever they stand."""
+    if isinstance(schema, list):
+        return set().union(*map(_keys, schema))
+    if not isinstance(schema, dict):
+        return set()
+    own = set(schema.get("properties", {}))
+    return own.union(*map(_keys, schema.values()))
 
 
 def _misplaced() -> Iterator[str]:

@@ -18,4 +18,4 @@ lock() {
 }
 
 lock requirements.lock "$@"
-lock requirements-test.lock --extra test --extra cluster --extra mcap --extra xlsx "$@"
+lock requirements-test.lock --extra test --extra docs --extra cluster --extra mcap --extra xlsx "$@"
