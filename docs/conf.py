@@ -59,6 +59,7 @@ CONTENTS = {
     ],
     "Explanation": [
         "docs/theory",
+        "docs/study",
         "docs/credibility",
         "docs/architecture",
         "docs/performance",

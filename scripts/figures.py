@@ -2,6 +2,11 @@
 
     python scripts/figures.py [FOLDER] [NAME...]        default: docs, all of them
 
+``felt.png``: what the pilot feels of the post-stall reversal, as ``plot --figure felt`` draws it.
+
+``study``: the study's figures 7 to 10, in ``study/figure-N.svg``, as ``plot --figure N`` draws
+them of its law.
+
 ``cobra.png``: what the pilot of the Cobra feels, before, within the felt budgets,
 and within 5 % of the joint angles alone.
 
@@ -30,6 +35,7 @@ from des_cli.pipeline import reduce_profile
 from des_cli.profiles_in.load import load_profile
 from des_cli.runs_out.tables import trajectory_columns
 from des_cli.show.plots.canvas import draw, note, png, sheet, style
+from des_cli.show.plots.figures import draw_figure
 from des_cli.show.plots.pens import BEFORE, BLUE, GREEN, GREY, INK, VERMILION, Pen
 
 AZIMUTH = np.arange(0.0, 180.1, 7.5)
@@ -64,6 +70,9 @@ FREE_G = Pen("seat rate", GREEN, (0, (2.5, 1.2)), marker="D")
 ANGLES = Pen("joint angles", VERMILION, (0, (6, 1.5)), marker="s")
 STUDY = Pen("the study", INK, "", 0.0, 4.0, marker="X")
 
+STUDY_R2 = {"7": 1.0, "8": 1.0, "9": 0.2, "10": 1.0}
+"""The study's figures, and the weight for which each is drawn."""
+
 SHOWN_ANGULAR = 1.6
 """Ordinate of the total angular acceleration [rad/s²]: more would flatten the rest."""
 
@@ -74,16 +83,34 @@ SHOWN_RATE = 50.0
 def main() -> int:
     """Write the figures."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[1] / "docs")
-    makers = {"cobra": cobra, "tradeoff": tradeoff, "azimuth": azimuth}
-    for name in sys.argv[2:] or makers:
-        (folder / f"{name}.png").write_bytes(makers[name]())
+    makers = {"felt": felt, "cobra": cobra, "tradeoff": tradeoff, "azimuth": azimuth}
+    for name in sys.argv[2:] or (*makers, "study"):
+        if name == "study":
+            (folder / "study").mkdir(exist_ok=True)
+            for figure in STUDY_R2:
+                (folder / "study" / f"figure-{figure}.svg").write_bytes(study(figure))
+        else:
+            (folder / f"{name}.png").write_bytes(makers[name]())
     return 0
+
+
+def felt() -> bytes:
+    """Draw what the pilot feels of a maneuver that keeps every limit."""
+    run = reduce_profile(load_profile("post_stall_reversal"))
+    return draw_figure("felt", trajectory_columns(run), run.results, "png")
+
+
+def study(figure: str) -> bytes:
+    """Draw a figure of the study, of its law."""
+    settings = ["reduction.algorithm=report-sweep", f"reduction.r2={STUDY_R2[figure]}"]
+    run = reduce_profile(load_profile("cobra", settings=[*settings, "time.step_s=0.05"]))
+    return draw_figure(figure, trajectory_columns(run), run.results, "svg")
 
 
 def cobra() -> bytes:
     """Draw what is felt of the Cobra by two kinds of budgets."""
-    felt, five = reduce_profile(load_profile("cobra_felt")), _reduce({JOINTS: 0.05})
-    columns = trajectory_columns(felt), trajectory_columns(five)
+    own, five = reduce_profile(load_profile("cobra_felt")), _reduce({JOINTS: 0.05})
+    columns = trajectory_columns(own), trajectory_columns(five)
     title = "What the pilot of the Cobra feels"
     with style():
         figure, axes = sheet(title, [BEFORE, FELT, FIVE], 3, height=1.5)
@@ -106,7 +133,7 @@ def cobra() -> bytes:
         panels[0].set_ylim(0.0, None)
         panels[1].set_ylim(0.0, SHOWN_ANGULAR)
         panels[1].set_yticks(np.arange(0.0, SHOWN_ANGULAR, 0.5))
-        for panel, words in zip(panels, _told(felt, five), strict=True):
+        for panel, words in zip(panels, _told(own, five), strict=True):
             note(panel, words)
         return png(figure, title)
 
