@@ -50,8 +50,9 @@ def docs(session: nox.Session) -> None:
 @nox.session
 def site(session: nox.Session) -> None:
     """Build the documentation as a site, in build/site; a warning fails."""
-    folders = ["-c", "docs", "-d", "build/doctrees", ".", "build/site"]
-    _module(session, "sphinx", "--fail-on-warning", "--keep-going", "--quiet", *folders)
+    # Anew: pages that did not change would keep the navigation of the last time.
+    how = ["--fresh-env", "--write-all", "--fail-on-warning", "--keep-going", "--quiet"]
+    _module(session, "sphinx", *how, "-c", "docs", "-d", "build/doctrees", ".", "build/site")
 
 
 @nox.session

@@ -97,9 +97,9 @@ def metrics_page() -> str:
     """Return what may be budgeted, and every path of ``metrics.json``."""
     rows = []
     for key, metric in METRICS.items():
-        kind = "largest value over time" if key in PEAK_METRICS else "over the whole maneuver"
-        share = "share, or 10%" if metric.relative else metric.unit
-        rows.append((f"`{key}`", metric.label, share, MEANING[key], kind))
+        unit = "share" if metric.relative else metric.unit
+        rows.append((f"`{key}`", metric.label, unit, MEANING[key]))
+    peaks = " and ".join(f"`{key}`" for key in METRICS if key in PEAK_METRICS)
     found: dict[str, Any] = {}
     for name, settings in (("cobra", COBRA), ("g_flight", ("time.step_s=0.5",))):
         found = _merged(found, reduce_profile(load_profile(name, settings=settings)).metrics)
@@ -121,9 +121,11 @@ def metrics_page() -> str:
 
 Each may be a [budget](../formats.md#reduction), the largest value that is allowed, and is
 reported under `fidelity` in `metrics.json`. The label is what the summary calls it. Before is what
-the profile asks for, after is the modified motion.
+the profile asks for, after is the modified motion. A share may be given as a percentage. A
+budget on {peaks}
+holds at every instant, any other over the whole maneuver.
 
-{_table(("key", "label", "unit", "what it is", "bounded"), rows)}
+{_table(("key", "label", "unit", "what it is"), rows)}
 ## Keys of metrics.json
 
 Every path, as `report --store --where` and the columns of a [store](../scale.md#a-store-of-runs)
