@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-from des_cli import load_profile, reduce_profile
+from des_cli.pipeline import reduce_profile
+from des_cli.profiles_in.load import load_profile
 
 pytestmark = pytest.mark.slow
 

@@ -50,6 +50,11 @@ class Run:
         """Sentences for the user's attention."""
         return tuple(notice.text for notice in self.details.notices)
 
+    @property
+    def violations(self) -> tuple[str, ...]:
+        """Limits that the desired or the modified motion breaks, a line each."""
+        return tuple(str(violation) for violation in self.details.violations)
+
     @cached_property
     def refusal(self) -> tuple[str, ...]:
         """What stands against flying it, a line each; empty where it is released."""
