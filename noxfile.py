@@ -68,6 +68,12 @@ def full(session: nox.Session) -> None:
 
 
 @nox.session
+def browser(session: nox.Session) -> None:
+    """Try the page in Chromium, with ``pip install -e '.[browser]'``; without, all is skipped."""
+    _module(session, "pytest", "-m", "browser", "tests/show/browser", *session.posargs)
+
+
+@nox.session
 def coverage(session: nox.Session) -> None:
     """All tests, with the branches of des_cli that they take."""
     _pytest(session, "--cov", "--cov-branch", "--cov-report=term:skip-covered")

@@ -12,7 +12,6 @@ from hypothesis import settings
 
 import des_cli
 from des_cli.model.run import Run
-from des_cli.show.page import section
 from tests.support.runs import make_run
 
 # The same examples in every run, so that a check fails for a change and for nothing else;
@@ -53,9 +52,3 @@ def command(tmp_path: Path, python_environment: dict[str, str]) -> Command:
 def synthetic_run() -> Callable[..., Run]:
     """A function that makes a run of closed forms; see `make_run`."""
     return make_run
-
-
-@pytest.fixture
-def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No figures, for tests that look at the words only."""
-    monkeypatch.setattr(section, "draw_plots", lambda trajectory, metrics, drawn: {})

@@ -2,12 +2,15 @@
 
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import click
 import pytest
 
 from des_cli.cli.main import COMMANDS, program
+from des_cli.model.run import Run
+from des_cli.runs_out.run_folder import write_run
 
 # Runs the command line in a fresh interpreter and prints, as the last line of
 # stderr, which of the watched modules it imported.
@@ -37,6 +40,12 @@ def imported(watched: set[str], *args: str, cwd: Path, env: dict[str, str]) -> s
     return set(names)
 
 
+@pytest.fixture
+def one_run(tmp_path: Path, synthetic_run: Callable[..., Run]) -> None:
+    """Write a run without figures into the folder ``run``."""
+    write_run(synthetic_run(), tmp_path / "run", plots=False)
+
+
 @pytest.mark.parametrize(
     "args",
     [
@@ -61,7 +70,7 @@ def test_help_leaves_numpy_unimported(
     args: list[str], tmp_path: Path, python_environment: dict[str, str]
 ) -> None:
     heavy = {"numpy", "scipy", "pandas", "pyarrow", "matplotlib", "pydantic", "ruamel.yaml"}
-    heavy |= {"dask", "distributed", "openpyxl", "mcap"}
+    heavy |= {"dask", "distributed", "openpyxl", "mcap", "bokeh", "jinja2"}
     assert imported(heavy, *args, cwd=tmp_path, env=python_environment) == set()
 
 
@@ -83,6 +92,15 @@ def test_factors_leave_the_free_motion_and_filters_unimported(
     watched |= {"scipy.signal", "scipy.interpolate", "dask", "distributed"}
     args = ["reduce", "cobra", "--set", "time.step_s=0.25", "-o", "x.csv"]
     assert imported(watched, *args, cwd=tmp_path, env=python_environment) == set()
+
+
+@pytest.mark.usefixtures("one_run")
+def test_a_page_leaves_matplotlib_and_the_python_of_bokeh_unimported(
+    tmp_path: Path, python_environment: dict[str, str]
+) -> None:
+    watched = {"matplotlib", "bokeh", "scipy.integrate", "jinja2"}
+    args = ["report", "run", "-o", "page.html"]
+    assert imported(watched, *args, cwd=tmp_path, env=python_environment) == {"jinja2"}
 
 
 def test_package_leaves_numpy_unimported(python_environment: dict[str, str]) -> None:

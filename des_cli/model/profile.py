@@ -18,6 +18,7 @@ from des_cli.model.metric import (
     SEAT_RATE_DEVIATION,
     Budget,
 )
+from des_cli.model.origin import Origin
 
 Method: TypeAlias = Literal["minimum", "zero"]
 Algorithm: TypeAlias = Literal["optimum", "report-sweep"]
@@ -267,6 +268,8 @@ class Profile:
         the reference [Hz]. Infinite where it is not smoothed.
     remarks : tuple of str
         What reading changed of the file, a sentence each.
+    origin : Origin, optional
+        What it was read from; None of a profile that was made otherwise.
     """
 
     name: str
@@ -279,6 +282,7 @@ class Profile:
     sha256: str = ""
     smooth_cutoff_hz: float = math.inf
     remarks: tuple[str, ...] = ()
+    origin: Origin | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         freeze(self, "t", (None,))

@@ -5,13 +5,16 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from des_cli.errors import Complaint, ProfileError, UsageError
+from des_cli.model.origin import SourceFile
 from des_cli.model.profile import Profile
 from des_cli.profiles_in.caps import DEFAULT_CAPS, Caps
 from des_cli.profiles_in.findings import Findings, bounded
 from des_cli.profiles_in.gaps import GapHandling
+from des_cli.profiles_in.origin import origin_of, source_name
 from des_cli.profiles_in.profile_csv import parse_samples
 from des_cli.profiles_in.profile_file import ProfileFile
 from des_cli.profiles_in.profile_name import name_of_file
@@ -138,10 +141,14 @@ def parse_file(
     try:
         if file.is_yaml:
             _refuse_table_options(label, columns, written)
-            return parse_profile(decode(data, label), reading, name, settings)
-        return _load_csv(text, reading, name, settings, columns, written)
+            profile = parse_profile(decode(data, label), reading, name, settings)
+        else:
+            profile = _load_csv(text, reading, name, settings, columns, written)
     except ProfileError as error:
         raise ProfileError(bounded(error.complaints)) from None
+    own = SourceFile(source_name(path, file.is_yaml), data)
+    origin = origin_of(own, reading.files, settings, columns, written, file.caps)
+    return replace(profile, origin=origin)
 
 
 def _refuse_table_options(

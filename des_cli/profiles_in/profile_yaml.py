@@ -37,6 +37,7 @@ from des_cli.profiles_in.overrides import OPTION, apply_settings
 from des_cli.profiles_in.profile_csv import parse_samples
 from des_cli.profiles_in.record_checks import unfollowed_turning
 from des_cli.profiles_in.reduction_section import read_reduction
+from des_cli.profiles_in.referred import Referred
 from des_cli.profiles_in.schema import BodyRates as BodyRatesSection
 from des_cli.profiles_in.schema import Joints as JointsSection
 from des_cli.profiles_in.schema import ProfileDocument, ProfileSettings
@@ -73,6 +74,8 @@ class Reading:
         The most that is read.
     machine : Machine, optional
         As soon as it is known.
+    files : list of Referred
+        Takes the files that the profile refers to.
     """
 
     label: str
@@ -83,21 +86,26 @@ class Reading:
     remarks: list[str] = field(default_factory=list)
     caps: Caps = DEFAULT_CAPS
     machine: Machine | None = None
+    files: list[Referred] = field(default_factory=list)
 
-    def referred(self, name: str, place: str) -> tuple[str, bytes]:
+    def referred(self, key: str, name: str, place: str) -> tuple[str, bytes]:
         """Return label and content of a file that the profile refers to.
 
         Parameters
         ----------
+        key : str
+            ``machine`` or ``samples.file``.
         name : str
         place : str
             Where it is named: a path in a profile starts at the profile's
             folder, one of an option at the current folder.
         """
-        path = Path(name) if place.startswith(OPTION) else self.folder / name
+        by_option = place.startswith(OPTION)
+        path = Path(name) if by_option else self.folder / name
         label = label_of(path)
         data = read_source(path, label, self.caps.mib)
         self.digest.update(hashlib.sha256(data).digest())
+        self.files.append(Referred(key, name, data, by_option))
         return label, data
 
 
@@ -237,7 +245,7 @@ def read_machine(document: ProfileSettings, reading: Reading, findings: Findings
     if not isinstance(choice, str):
         return build_machine(choice, ("machine",), findings)
     if is_machine_file(choice):
-        label, data = reading.referred(choice, findings.root.place_of(["machine"]))
+        label, data = reading.referred("machine", choice, findings.root.place_of(["machine"]))
         return parse_machine(decode(data, label), label)
     return named_machine(choice, ("machine",), findings)
 
@@ -341,7 +349,8 @@ def document_commands(
 
 
 def _sampled(section: Any, reading: Reading, findings: Findings) -> Commands:
-    label, data = reading.referred(section.file, findings.root.place_of(["samples", "file"]))
+    place = findings.root.place_of(["samples", "file"])
+    label, data = reading.referred("samples.file", section.file, place)
     text, remarks = decode_table(data, label)
     reading.remarks += remarks
     return parse_samples(

@@ -64,7 +64,9 @@ def load_variants(
     found: list[Profile | DesError] = [profile]
     for each in others:
         try:
-            found.append(replace(profile, reduction=_parse_reduction(file, each), sha256=""))
+            found.append(
+                replace(profile, reduction=_parse_reduction(file, each), sha256="", origin=None)
+            )
         except DesError as error:
             found.append(error)
     return found

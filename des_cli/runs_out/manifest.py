@@ -15,6 +15,7 @@ import numpy as np
 
 from des_cli import __version__
 from des_cli.errors import Complaint, FileAccessError
+from des_cli.model.origin import Origin
 from des_cli.model.run import Run
 from des_cli.profiles_in.machine_yaml import machine_mapping
 from des_cli.profiles_in.source import label_of, read_source
@@ -33,6 +34,12 @@ TRAJECTORY = "trajectory.parquet"
 PROFILE = "profile.yaml"
 METRICS = "metrics.json"
 """Names of the outputs of a run, as seen from its folder."""
+
+SOURCE = "source/"
+"""The folder of what the profile was read from."""
+
+AGAIN = "again"
+"""The folder in which the command of a manifest makes the run again."""
 
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 _SEAL = re.compile(rb',\n  "sha256": "([0-9a-f]{64})"\n\}\n\Z')
@@ -70,12 +77,19 @@ def encode_manifest(run: Run, outputs: Mapping[str, bytes]) -> bytes:
             "seat": {"yaw_rad": run.seat.yaw, "pitch_rad": run.seat.pitch},
             "start": {"arm_rad": float(run.commands.angle[0, 0])},
             "limits": profile.reduction.limits,
+            **({"made": {"command": _command(profile.origin)}} if profile.origin else {}),
             "files": [
                 {"name": name, "size": len(data), "sha256": hashlib.sha256(data).hexdigest()}
                 for name, data in outputs.items()
             ],
         }
     )
+
+
+def _command(origin: Origin) -> list[str]:
+    """Return the words of the command that makes a run again, given in its folder."""
+    source = f"{SOURCE}{origin.files[0].name}"
+    return ["des-coriolis", "reduce", source, *origin.options, "-o", AGAIN]
 
 
 def seal(content: Mapping[str, Any]) -> bytes:

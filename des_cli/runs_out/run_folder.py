@@ -22,6 +22,7 @@ from des_cli.runs_out.manifest import (
     MANIFEST,
     METRICS,
     PROFILE,
+    SOURCE,
     TRAJECTORY,
     encode_json,
     encode_manifest,
@@ -210,6 +211,8 @@ def _outputs(run: Run, plots: bool) -> dict[str, bytes]:
     }
     if run.results.parameters:
         outputs[PROFILE] = encode_run_profile(run, COMMANDS)
+    if run.profile.origin:
+        outputs |= {f"{SOURCE}{file.name}": file.data for file in run.profile.origin.files}
     if plots:
         # Imported here: matplotlib costs half a second that --no-plots does not need.
         from des_cli.show.plots import draw_plots

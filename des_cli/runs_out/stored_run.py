@@ -4,28 +4,25 @@ from __future__ import annotations
 
 import hashlib
 import os
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from des_cli import __version__
 from des_cli.errors import Complaint, FileAccessError, UnreadableError
 from des_cli.model.arrays import Floats
 from des_cli.runs_out.manifest import (
     COMMANDS,
     MANIFEST,
     METRICS,
+    SOURCE,
     TRAJECTORY,
     parse_object,
     read_bytes,
     read_manifest,
 )
 from des_cli.runs_out.tables import trajectory_names
-
-_FIGURE = re.compile(r"plots/(\w+)\.png")
 
 
 @dataclass(frozen=True)
@@ -45,8 +42,8 @@ class StoredRun:
         The content of ``manifest.json``.
     commands : bytes
         The command table, not read.
-    figures : dict of str to bytes
-        PNGs by their names, where this version of the tool has drawn them.
+    sources : dict of str to bytes
+        What the profile was read from, by the names of the files in ``source/``.
     """
 
     name: str
@@ -55,7 +52,7 @@ class StoredRun:
     trajectory: dict[str, Floats]
     manifest: dict[str, Any]
     commands: bytes = b""
-    figures: dict[str, bytes] = field(default_factory=dict)
+    sources: dict[str, bytes] = field(default_factory=dict)
 
 
 def read_run(folder: str | os.PathLike[str]) -> StoredRun:
@@ -73,8 +70,7 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
     complaints: list[Complaint] = []
     unreadable: list[Complaint] = []
     content: dict[str, bytes] = {}
-    figures: dict[str, bytes] = {}
-    own = isinstance(tool := manifest.get("tool"), dict) and tool.get("version") == __version__
+    sources: dict[str, bytes] = {}
     for entry in manifest["files"]:
         path = home / entry["name"]
         try:
@@ -90,8 +86,8 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
             complaints.append(Complaint(str(path), what))
         if entry["name"] in (COMMANDS, METRICS, TRAJECTORY):
             content[entry["name"]] = data
-        elif own and (figure := _FIGURE.fullmatch(entry["name"])):
-            figures[figure[1]] = data
+        elif entry["name"].startswith(SOURCE):
+            sources[entry["name"].removeprefix(SOURCE)] = data
     listed = {entry["name"] for entry in manifest["files"]}
     complaints += [
         Complaint(str(home / MANIFEST), f"does not list {name}")
@@ -109,7 +105,7 @@ def read_run(folder: str | os.PathLike[str]) -> StoredRun:
         trajectory=_read_trajectory(home / TRAJECTORY, content[TRAJECTORY]),
         manifest=manifest,
         commands=content[COMMANDS],
-        figures=figures,
+        sources=sources,
     )
 
 

@@ -17,7 +17,7 @@ def test_default_is_a_run_folder_named_after_the_profile(invoke, small: str, tmp
     result = invoke("reduce", small)
     assert (result.exit_code, result.stdout) == (0, "")
     folder = tmp_path / "runs" / "small"
-    assert {path.name for path in folder.iterdir()} == RUN_FILES | {"plots"}
+    assert {path.name for path in folder.iterdir()} == RUN_FILES | {"plots", "source"}
     assert list((folder / "plots").glob("*.png"))
     assert result.stderr.startswith("small: ")
     assert "converged in" in result.stderr
@@ -36,7 +36,7 @@ def test_summary_names_gain_and_cost(invoke, small: str, tmp_path) -> None:
 
 def test_no_plots(invoke, small: str, tmp_path) -> None:
     assert invoke("reduce", small, "--no-plots", "-o", "here").exit_code == 0
-    assert {path.name for path in (tmp_path / "here").iterdir()} == RUN_FILES
+    assert {path.name for path in (tmp_path / "here").iterdir()} == RUN_FILES | {"source"}
 
 
 def test_out_is_the_folder_itself_for_one_profile(invoke, small: str, tmp_path) -> None:

@@ -23,7 +23,7 @@ def test_without_arguments_every_run_under_runs(invoke, tmp_path: Path) -> None:
     assert "two" in page
 
 
-@pytest.mark.usefixtures("two_runs", "undrawn")
+@pytest.mark.usefixtures("two_runs")
 def test_a_second_report_replaces_the_first_only_where_that_is_asked(
     invoke, tmp_path: Path
 ) -> None:
@@ -36,7 +36,7 @@ def test_a_second_report_replaces_the_first_only_where_that_is_asked(
     assert "two" in (tmp_path / "report.html").read_text()
 
 
-@pytest.mark.usefixtures("two_runs", "undrawn")
+@pytest.mark.usefixtures("two_runs")
 def test_named_runs_to_a_file_or_stdout(invoke, tmp_path: Path) -> None:
     assert invoke("report", "runs/one", "-o", "page.html").exit_code == 0
     result = invoke("report", "runs/one", "-o", "-")
@@ -45,13 +45,13 @@ def test_named_runs_to_a_file_or_stdout(invoke, tmp_path: Path) -> None:
     assert result.stdout != invoke("report", "runs/two", "-o", "-").stdout
 
 
-@pytest.mark.usefixtures("two_runs", "undrawn")
+@pytest.mark.usefixtures("two_runs")
 def test_a_run_named_twice_is_on_the_page_once(invoke) -> None:
     result = invoke("report", "runs", "runs/one", "-o", "page.html")
     assert result.stderr == "2 runs in page.html\n"
 
 
-@pytest.mark.usefixtures("two_runs", "undrawn")
+@pytest.mark.usefixtures("two_runs")
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
 def test_a_page_is_not_kept_waiting_by_a_pipe(invoke, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "page.html")

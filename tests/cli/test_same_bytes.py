@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -45,3 +46,19 @@ def test_bytes_do_not_depend_on_what_surrounds_the_process(reduced) -> None:
         PYTHONOPTIMIZE="1",
     )
     assert other == plain
+
+
+def test_a_run_is_made_again_from_its_own_folder(
+    invoke, write_profile, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name = write_profile("one").name
+    options = ["--r2", "0.7", "--set", "seat.yaw_deg=80", "--no-plots"]
+    assert invoke("-q", "reduce", name, *options, "-o", "run").exit_code == 0
+    first = tree(tmp_path / "run")
+    assert first["source/one.yaml"] == (tmp_path / name).read_bytes()
+    program, *words = json.loads(first["manifest.json"])["made"]["command"]
+    assert program == "des-coriolis"
+    (tmp_path / name).unlink()
+    monkeypatch.chdir(tmp_path / "run")
+    assert invoke("-q", *words, "--no-plots").exit_code == 0
+    assert tree(tmp_path / "run" / "again") == first

@@ -46,7 +46,6 @@ def test_what_cannot_be_seen_is_written_out() -> None:
     ],
     ids=lambda args: f"{args[0]} {len(args)}".split("\n")[0],
 )
-@pytest.mark.usefixtures("undrawn")
 def test_no_command_prints_a_control_character(
     invoke, small: str, tmp_path: Path, synthetic_run, args: list[str]
 ) -> None:

@@ -4,17 +4,34 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import jinja2
 
 from des_cli.results.reading import read_metrics
+from des_cli.results.verdict import Word
 from des_cli.runs_out.stored_run import StoredRun
-from des_cli.show.page.comparison import comparison_rows, labels
+from des_cli.show.page.assets import page_script, plot_library, policy_source
+from des_cli.show.page.cells import labels
+from des_cli.show.page.latex import latex_table
+from des_cli.show.page.packing import columns_for
+from des_cli.show.page.panels import Panel
+from des_cli.show.page.run_table import COLUMNS, run_rows
 from des_cli.show.page.section import run_section
+from des_cli.show.words import PAGE
 
 # HTML has no way to write these characters, not even escaped.
 _NOT_HTML = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+
+_CLASSES: Mapping[Word, str] = {"fly": "fly", "look": "look", "don't": "dont"}
+
+OVERLAID = (
+    "Cross-coupling, size after [rad/s²]",
+    "Total angular acceleration, size after [rad/s²]",
+    "|G| after [g]",
+)
+"""The plots in which chosen runs lie over each other; ``table.js`` fills them in this order."""
 
 NOMENCLATURE: tuple[tuple[str, str], ...] = (
     ("θ₁, θ₂, θ₃", "angles of arm, fork and cab [rad]; Θ are the desired ones"),
@@ -25,6 +42,7 @@ NOMENCLATURE: tuple[tuple[str, str], ...] = (
         "angular acceleration, along the inertial axes i₀, j₀, k₀ [rad/s²]",
     ),
     ("seat x, y, z", "the same vector along the seat's axes: forward, right, down [rad/s²]"),
+    ("c", "the cross-coupling vector in plots, along the seat's axes; |c| is its size [rad/s²]"),
     (
         "α = dW/dt",
         "total angular acceleration of the seat, along its axes, cross-coupling and joint "
@@ -66,23 +84,39 @@ def render_report(runs: Sequence[StoredRun]) -> str:
     if not runs:
         raise ValueError("a report needs at least one run")
     metrics = [read_metrics(run.metrics) for run in runs]
-    comparison = comparison_rows(metrics)
+    names, columns = labels(runs), columns_for(len(runs))
+    sections = [
+        run_section(run, read, name, position, columns)
+        for position, (run, read, name) in enumerate(
+            zip(runs, metrics, names, strict=True), start=1
+        )
+    ]
     page = (
         _environment()
         .get_template("page.html.j2")
         .render(
-            sections=[
-                run_section(run, read, label, position)
-                for position, (run, read, label) in enumerate(
-                    zip(runs, metrics, labels(runs), strict=True), start=1
-                )
-            ],
-            comparison=comparison,
-            attention=any(cell.mark == "bad" for row in comparison for cell in row.cells),
+            sections=sections,
+            rows=run_rows(names, metrics, [section.verdict for section in sections]),
+            columns=COLUMNS,
+            overlaid=OVERLAID,
             nomenclature=NOMENCLATURE,
+            words=_CLASSES,
+            number=PAGE.number,
+            sentence=PAGE.sentence,
+            joint_panel=_of_joint,
+            latex=latex_table,
+            policy=" ".join(map(policy_source, (plot_library(), page_script()))),
         )
     )
-    return _NOT_HTML.sub("\ufffd", page)
+    # The scripts are not searched for stray characters: they are long, and their digests
+    # stand in the policy.
+    scripts = "".join(f"<script>{each}</script>\n" for each in (plot_library(), page_script()))
+    return _NOT_HTML.sub("\ufffd", page) + scripts + "</body>\n</html>\n"
+
+
+def _of_joint(joint: str, panel: Panel) -> Panel:
+    """Return a panel whose title also names the joint."""
+    return replace(panel, title=f"{joint} {panel.title.lower()}")
 
 
 @functools.cache

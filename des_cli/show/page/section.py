@@ -1,36 +1,36 @@
-"""One run on the page: its tables, facts and figures."""
+"""One run on the page: everything the template needs of it, and what its script does."""
 
 from __future__ import annotations
 
-import base64
+import json
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+
+import markupsafe
 
 from des_cli.model.metric import ATTITUDE_ERROR, FACTOR_DEVIATION
 from des_cli.model.metrics import Metrics
+from des_cli.results.verdict import Verdict, find_verdict
 from des_cli.runs_out.stored_run import StoredRun
-from des_cli.show.page.comparison import Cell
+from des_cli.show.page.cells import Cell
+from des_cli.show.page.curves import Family, FamilyName, families_of
+from des_cli.show.page.limit_bars import Bar, limit_bars
+from des_cli.show.page.machine_view import MachineView, machine_view
+from des_cli.show.page.packing import pack_family, thin_family
+from des_cli.show.page.panels import GROUPS, Panel, panels_of
+from des_cli.show.page.reproduce import Reproduction, reproduction_of, seat_words
+from des_cli.show.page.sheet import Still, stills_of
 from des_cli.show.page.summary import summary_sentences
 from des_cli.show.page.tables import coriolis_rows, joint_rows, limit_rows, seat_rows, turning_rows
-from des_cli.show.page.tiles import Tile, felt_tiles
-from des_cli.show.plots import CAPTIONS, draw_plots
-from des_cli.show.plots.standing import budget_words
+from des_cli.show.page.tiles import Tile, run_tiles
+from des_cli.show.page.tradeoff_points import TradePlace, trade_places
+from des_cli.show.standing import budget_words
 from des_cli.show.words import PAGE, text_of
 
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """A figure inside the page.
-
-    Parameters
-    ----------
-    name, caption : str
-    data : str
-        The PNG in base64.
-    """
-
-    name: str
-    caption: str
-    data: str
+_CSV_UNITS = {"rad/s²": "rad_s2", "deg/s": "deg_s", "g": "g", "g/s": "g_s", "deg": "deg"}
+_CSV_UNITS |= {"rad/s³": "rad_s3", "s/rad": "s_rad"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,35 +41,56 @@ class Section:
     ----------
     anchor : str
         Made from the position, never from the name.
-    name, what : str
-        What the run is called, and in one line what was done with it.
-    sentences, notices, violations : list of str
+    name, machine, seat, what : str
+        What the run is called, on which machine and seat, and in one line what was done.
+    verdict : Verdict
     tiles : list of Tile
-        What the pilot feels, at the head of the section.
-    coriolis, turning, limits, joints, seat : list of list of Cell
+    stills : list of Still
+        For paper, and for who has no script.
+    sentences, notices, violations : list of str
+    bars : list of Bar
+    groups : list of (str, str, list of Panel)
+        Of the interactive plots: key, title and panels.
+    trade : list of TradePlace
+    coriolis, turning, limits, joints, seat_g : list of list of Cell
         Rows of the tables.
     facts : list of (str, str)
-        Of the solver, the profile and the tool.
-    pictures : list of Picture
+        Of the solver.
+    again : Reproduction
+    moves : bool
+        Whether the machine is known, so that it can be drawn.
+    data : markupsafe.Markup
+        JSON for the script.
     """
 
     anchor: str
     name: str
+    machine: str
+    seat: str
     what: str
+    verdict: Verdict
+    tiles: list[Tile]
+    stills: list[Still]
     sentences: list[str]
     notices: list[str]
     violations: list[str]
-    tiles: list[Tile]
+    bars: list[Bar]
+    groups: list[tuple[str, str, list[Panel]]]
+    trade: list[TradePlace]
     coriolis: list[list[Cell]]
     turning: list[list[Cell]]
     limits: list[list[Cell]]
     joints: list[list[Cell]]
-    seat: list[list[Cell]]
+    seat_g: list[list[Cell]]
     facts: list[tuple[str, str]]
-    pictures: list[Picture]
+    again: Reproduction
+    moves: bool
+    data: markupsafe.Markup
 
 
-def run_section(run: StoredRun, metrics: Metrics, label: str, number_of_run: int) -> Section:
+def run_section(
+    run: StoredRun, metrics: Metrics, label: str, number_of_run: int, columns: int
+) -> Section:
     """Return the section of a run.
 
     Parameters
@@ -81,27 +102,82 @@ def run_section(run: StoredRun, metrics: Metrics, label: str, number_of_run: int
         What it is called on the page.
     number_of_run : int
         Its position on the page, from 1.
+    columns : int
+        Into how many columns of pixels its curves are cut; see `packing.columns_for`.
     """
-    pictures = [
-        Picture(name, CAPTIONS[name], base64.b64encode(png).decode("ascii"))
-        for name, png in draw_plots(run.trajectory, run.metrics, run.figures).items()
-    ]
+    families = families_of(run.trajectory)
+    view = machine_view(run.manifest, metrics)
+    panels = panels_of(families, metrics, view.angle_limits if view else None)
     return Section(
         anchor=f"run-{number_of_run}",
         name=label,
+        machine=text_of(metrics.profile.machine),
+        seat=seat_words(view) or PAGE.unknown,
         what=_what(metrics),
+        verdict=find_verdict(metrics),
+        tiles=run_tiles(metrics, families),
+        stills=stills_of(families),
         sentences=summary_sentences(metrics),
         notices=list(metrics.notices),
         violations=list(metrics.violations),
-        tiles=felt_tiles(metrics),
+        bars=limit_bars(metrics),
+        groups=_grouped(panels),
+        trade=trade_places(metrics),
         coriolis=coriolis_rows(metrics),
         turning=turning_rows(metrics),
         limits=limit_rows(metrics),
         joints=joint_rows(metrics),
-        seat=seat_rows(metrics),
-        facts=_facts(run, metrics),
-        pictures=pictures,
+        seat_g=seat_rows(metrics),
+        facts=_facts(metrics),
+        again=reproduction_of(run, metrics, view),
+        moves=view is not None,
+        data=_data(label, families, panels, view, columns),
     )
+
+
+def _grouped(panels: Sequence[Panel]) -> list[tuple[str, str, list[Panel]]]:
+    grouped = [
+        (key, title, [panel for panel in panels if panel.group == key])
+        for key, title in GROUPS.items()
+    ]
+    return [group for group in grouped if group[2]]
+
+
+def _data(
+    label: str,
+    families: dict[FamilyName, Family],
+    panels: Sequence[Panel],
+    view: MachineView | None,
+    columns: int,
+) -> markupsafe.Markup:
+    """Return what the script draws the run from, as JSON that no text can end early."""
+    t = families["rate"].t
+    start = float(t[0])
+    content: dict[str, Any] = {
+        "name": label,
+        "file": re.sub(r"[^\w-]+", "_", label, flags=re.ASCII)[:60] or "run",
+        "start": start,
+        "duration": float(t[-1] - t[0]),
+        "panels": [
+            {
+                "key": panel.key,
+                "family": panel.family,
+                "csv_unit": _CSV_UNITS.get(panel.unit, ""),
+                "curves": [{"column": each.column, "pen": each.pen} for each in panel.curves],
+                "span": panel.span,
+                "limit": panel.limit,
+                "at_limit": panel.at_limit,
+            }
+            for panel in panels
+        ],
+        "chains": view.chains() if view else None,
+        "packed": {
+            name: pack_family(thin_family(family, columns), start)
+            for name, family in families.items()
+        },
+    }
+    text = json.dumps(content, separators=(",", ":"), allow_nan=False)
+    return markupsafe.Markup(text.replace("<", "\\u003c"))
 
 
 def _what(metrics: Metrics) -> str:
@@ -114,10 +190,8 @@ def _what(metrics: Metrics) -> str:
     )
 
 
-def _facts(run: StoredRun, metrics: Metrics) -> list[tuple[str, str]]:
+def _facts(metrics: Metrics) -> list[tuple[str, str]]:
     solver, fidelity, singularity = metrics.solver, metrics.fidelity, metrics.singularity
-    tool = run.manifest.get("tool")
-    maker = tool if isinstance(tool, dict) else {}
     return [
         ("status", f"{text_of(solver.status)}: {text_of(solver.message)}"),
         ("iterations", text_of(solver.iterations)),
@@ -140,6 +214,4 @@ def _facts(run: StoredRun, metrics: Metrics) -> list[tuple[str, str]]:
             f"damped samples {text_of(singularity.damped_samples)}, "
             f"residual {PAGE.number(singularity.max_residual_rad_s, 3)} rad/s",
         ),
-        ("profile's SHA-256", text_of(metrics.profile.sha256)),
-        ("made by", f"{text_of(maker.get('name'))} {text_of(maker.get('version'))}"),
     ]

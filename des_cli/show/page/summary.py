@@ -11,9 +11,9 @@ from des_cli.model.metric import (
 )
 from des_cli.model.metrics import Metrics
 from des_cli.results.worse import worse_words
-from des_cli.show.page.comparison import limits_cell
-from des_cli.show.plots.standing import budget_words, change_words
-from des_cli.show.plots.weighted import weighted_component
+from des_cli.show.page.cells import limits_cell
+from des_cli.show.standing import budget_words, change_words
+from des_cli.show.weighted import weighted_component
 from des_cli.show.words import PAGE, in_sentence, listed, text_of
 
 # A component that grows by less is rounding, or noise in a component that

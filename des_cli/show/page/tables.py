@@ -11,7 +11,7 @@ from des_cli.model.loads import Driven, JointLoad
 from des_cli.model.machine import JOINTS, Joint
 from des_cli.model.metrics import Metrics
 from des_cli.results.worse import worse_numbers
-from des_cli.show.page.comparison import Cell
+from des_cli.show.page.cells import Cell
 from des_cli.show.words import PAGE, axis_name
 
 # Rounding of the solver's last step is no violation.

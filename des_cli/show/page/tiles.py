@@ -1,14 +1,21 @@
-"""What the pilot feels of a run, as a row of tiles at the head of its section."""
+"""The six numbers of a run that matter, as tiles at the head of its section."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
+from des_cli.model.felt import BeforeAfter
 from des_cli.model.metric import SEAT_G_ERROR, SEAT_RATE_DEVIATION
-from des_cli.model.metrics import Metrics, When
+from des_cli.model.metrics import Metrics
 from des_cli.results.ends import end_words
+from des_cli.results.margins import nearest_limit
 from des_cli.results.worse import FeltNumber, worse_numbers
-from des_cli.show.words import PAGE, axis_name
+from des_cli.show.page.curves import Family, FamilyName
+from des_cli.show.words import PAGE
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,65 +25,83 @@ class Tile:
     Parameters
     ----------
     label, value, detail : str
-    mark : str
-        ``bad`` for what got worse, else empty.
+    mark, detail_mark : str
+        ``bad`` where the value, or the detail, got worse, else empty.
     """
 
     label: str
     value: str
     detail: str = ""
     mark: str = ""
+    detail_mark: str = ""
 
 
-def felt_tiles(metrics: Metrics) -> list[Tile]:
-    """Return the tiles of a run; one whose number is not known is left out."""
-    worse, gy = worse_numbers(metrics), metrics.felt.seat_g["gy"]
-    tiles = [
+def run_tiles(metrics: Metrics, families: Mapping[FamilyName, Family]) -> list[Tile]:
+    """Return the tiles of a run; a number that is not known is a dash."""
+    worse = worse_numbers(metrics)
+    return [
         _cross_coupling(metrics),
         _turning(metrics, worse),
-        Tile("Seat rate off by", PAGE.percent(metrics.fidelity.value(SEAT_RATE_DEVIATION))),
-        _force(metrics),
-        Tile("Peak Gy", PAGE.from_to(gy.peak), "g", _mark("gy peak" in worse)),
-        _onset(metrics, worse),
-        _end(metrics, "start", worse),
-        _end(metrics, "end", worse),
+        _rate(metrics),
+        _force(metrics, families["g"], worse),
+        _margin(metrics),
+        _ends(metrics, worse),
     ]
-    return [tile for tile in tiles if tile.value not in ("", PAGE.unknown)]
 
 
 def _cross_coupling(metrics: Metrics) -> Tile:
     vector = metrics.coriolis.parts["vector"]
     grew = vector.reduction is not None and vector.reduction < 0
-    sizes = PAGE.from_to(vector.sizes.rms)
-    detail = f"{sizes} rad/s² rms" if sizes else ""
-    return Tile("Cross-coupling, squared", PAGE.change(vector.reduction), detail, _mark(grew))
+    detail = f"rad/s² rms; {PAGE.change(vector.reduction)} squared"
+    return Tile("Cross-coupling", _pair(vector.sizes.rms), detail, _mark(grew))
 
 
 def _turning(metrics: Metrics, worse: frozenset[FeltNumber]) -> Tile:
     peak = PAGE.from_to(metrics.felt.turning.peak)
     detail = f"rad/s² rms; peak {peak}" if peak else "rad/s² rms"
-    mark = _mark(bool({"turning rms", "turning peak"} & worse))
-    return Tile("Total angular acceleration", PAGE.from_to(metrics.felt.turning.rms), detail, mark)
+    marks = (_mark(f"turning {size}" in worse) for size in ("rms", "peak"))
+    return Tile("Total angular acceleration", _pair(metrics.felt.turning.rms), detail, *marks)
 
 
-def _force(metrics: Metrics) -> Tile:
-    tilt = metrics.fidelity.tilt_error_max_deg
-    detail = "g rms" if tilt is None else f"g rms; tilt {PAGE.number(tilt, 2)}° at most"
-    return Tile("Seat G off by", PAGE.number(metrics.fidelity.value(SEAT_G_ERROR), 3), detail)
+def _rate(metrics: Metrics) -> Tile:
+    rms = metrics.felt.seat_rate["magnitude"].rms
+    known = rms.known and BeforeAfter(*map(math.degrees, rms.known))
+    detail = f"{PAGE.from_to(known)} deg/s rms" if known else ""
+    value = PAGE.percent(metrics.fidelity.value(SEAT_RATE_DEVIATION))
+    return Tile("Seat rate off by", value, detail)
 
 
-def _onset(metrics: Metrics, worse: frozenset[FeltNumber]) -> Tile:
-    """Return the onset on the axis where it is largest afterwards."""
-    axis = metrics.felt.hardest_onset
-    value = PAGE.from_to(metrics.felt.seat_g[axis].onset)
-    return Tile(f"{axis_name(axis)} onset", value, "g/s", _mark(f"{axis} onset" in worse))
+def _force(metrics: Metrics, family: Family, worse: frozenset[FeltNumber]) -> Tile:
+    peaks = [float(np.max(np.abs(family.values[f"gn_{when}"]))) for when in ("before", "after")]
+    sideways, off = metrics.felt.seat_g["gy"].peak, metrics.fidelity.value(SEAT_G_ERROR)
+    detail = f"g; Gy {_pair(sideways)}; off by {PAGE.number(off)} rms"
+    value = PAGE.from_to(BeforeAfter(peaks[0], peaks[1]))
+    return Tile("Peak G", value, detail, detail_mark=_mark("gy peak" in worse))
 
 
-def _end(metrics: Metrics, when: When, worse: frozenset[FeltNumber]) -> Tile:
-    words = end_words(metrics.fidelity, when)
-    off = words and not words.startswith("as")
-    label = f"{when.capitalize()}{' off by' if off else ''}"
-    return Tile(label, PAGE.sentence(words), "", _mark(when in worse))
+def _margin(metrics: Metrics) -> Tile:
+    desired, modified = nearest_limit(metrics)
+    if modified is None:
+        return Tile("Smallest limit margin", PAGE.unknown)
+    value = PAGE.percent(max(0.0, modified.margin) if modified.ok else modified.margin)
+    detail = f"of the {modified.joint}'s {modified.driven}"
+    if desired is not None:
+        detail += f"; {PAGE.percent(desired.margin)} before"
+    return Tile("Smallest limit margin", value, detail, _mark(not modified.ok))
+
+
+def _ends(metrics: Metrics, worse: frozenset[FeltNumber]) -> Tile:
+    start, end = (PAGE.sentence(end_words(metrics.fidelity, when)) for when in ("start", "end"))
+    value = "as in the profile" if start == end == "as in the profile" else start
+    detail = "both" if value == end else f"end {'' if end.startswith('as') else 'off by '}{end}"
+    label = (
+        "Start and end" if value == end else "Start" if start.startswith("as") else "Start off by"
+    )
+    return Tile(label, value or PAGE.unknown, detail if end else "", _mark("start" in worse))
+
+
+def _pair(pair: BeforeAfter) -> str:
+    return PAGE.from_to(pair) or PAGE.unknown
 
 
 def _mark(bad: bool) -> str:

@@ -32,9 +32,9 @@ from des_cli.show.plots.canvas import (
 )
 from des_cli.show.plots.pens import AFTER, BEFORE, DESIRED, MODIFIED, Pen
 from des_cli.show.plots.ride import felt, limits
-from des_cli.show.plots.standing import budget_words, change_words, status_words
 from des_cli.show.plots.study import STUDY_FIGURES, factor, tradeoff_of_run
-from des_cli.show.plots.weighted import weighted_component
+from des_cli.show.standing import budget_words, change_words, status_words
+from des_cli.show.weighted import weighted_component
 from des_cli.show.words import FIGURE
 from des_cli.units import split_unit
 
@@ -58,8 +58,6 @@ CAPTIONS: Mapping[str, str] = {
 }
 """A sentence for each figure, in the order of a report."""
 
-NOTHING_DRAWN: Mapping[str, bytes] = MappingProxyType({})
-
 # Ordinates are at least this high, whatever the noise: a thousandth of what
 # the machine does in earnest.
 _FLOOR = {"rpm": 0.01, "deg": 0.01, "rad/s²": 2e-3, "p": 0.02}
@@ -73,9 +71,7 @@ _IN_AXES = [
 ]
 
 
-def draw_plots(
-    trajectory: Columns, content: Mapping[str, Any], drawn: Mapping[str, bytes] = NOTHING_DRAWN
-) -> dict[str, bytes]:
+def draw_plots(trajectory: Columns, content: Mapping[str, Any]) -> dict[str, bytes]:
     """Draw all figures of a run.
 
     Parameters
@@ -84,8 +80,6 @@ def draw_plots(
         The columns of ``trajectory.parquet``.
     content : mapping
         Of ``metrics.json``.
-    drawn : mapping of str to bytes
-        Figures of this very run that need not be drawn again.
 
     Returns
     -------
@@ -94,12 +88,7 @@ def draw_plots(
         ``factor`` and ``adjoint`` where the motion has none. The same input gives the same bytes.
     """
     metrics = read_metrics(content)
-    pictures = {}
-    for name in figures_of(trajectory):
-        pictures[name] = (
-            drawn[name] if name in drawn else draw_figure(name, trajectory, metrics, "png")
-        )
-    return pictures
+    return {name: draw_figure(name, trajectory, metrics, "png") for name in figures_of(trajectory)}
 
 
 def figures_of(trajectory: Columns) -> list[str]:

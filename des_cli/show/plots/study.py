@@ -18,7 +18,7 @@ from des_cli.model.tradeoff import BASELINE, Means, TradePoint
 from des_cli.show.plots.canvas import draw, note, sheet
 from des_cli.show.plots.pens import AFTER, BEFORE, DASHES, GREY, JOINT_PENS, MODIFIED, Pen
 from des_cli.show.plots.tradeoff import tradeoff_sheet
-from des_cli.show.plots.weighted import weighted_component
+from des_cli.show.weighted import weighted_component
 from des_cli.show.words import FIGURE
 
 Columns: TypeAlias = Mapping[str, Floats]

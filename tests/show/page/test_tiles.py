@@ -2,14 +2,11 @@
 
 from collections.abc import Callable
 
-import pytest
-
 from des_cli.runs_out.stored_run import StoredRun
 from des_cli.show.page.page import render_report
 from tests.support.page import Page, set_at
 
 
-@pytest.mark.usefixtures("undrawn")
 def test_what_the_pilot_feels_is_on_tiles_and_in_tables(stored: Callable[..., StoredRun]) -> None:
     run = stored()
     total = "felt.seat_angular_acceleration.magnitude"
@@ -25,18 +22,16 @@ def test_what_the_pilot_feels_is_on_tiles_and_in_tables(stored: Callable[..., St
     html = render_report([run])
     text = Page(html).text
     for words in (
+        "Cross-coupling",
         "Total angular acceleration 0.462 → 0.447 rad/s² rms; peak 0.539 → 0.521",
         "Seat rate off by 21.4 %",
-        "Seat G off by 0.131 g rms; tilt 6.4° at most",
-        "Peak Gy 1.4 → 1.2 g",
-        "Gz onset 0.8 → 0.79 g/s",
-        "Start as in the profile",
-        "End off by arm −68.8 deg and arm +1.15 deg/s",
+        "Gy 1.4 → 1.2; off by 0.131 rms",
+        "Smallest limit margin",
+        "Start as in the profile end off by arm −68.8 deg and arm +1.15 deg/s",
         "|α| [rad/s²] 0.4620 0.4470 0.5390 0.5210",
         "Gy −1.400 → −1.200 0.900 → 0.800 0.800 → 0.700 0.000 → 0.010 0.080",
         "cab jerk [rad/s³] 10 1.1000 1.1000",
         "arm, sign changes of its acceleration 3 3",
-        "total angular acceleration, rms [rad/s²] 0.462 → 0.447",
     ):
         assert words in text, words
     assert "Worse to sit in" not in text

@@ -24,15 +24,6 @@ def plain() -> dict[str, bytes]:
     return figures_of(make_run(11))
 
 
-def test_what_is_drawn_already_is_not_drawn_again(plain: dict[str, bytes]) -> None:
-    run = make_run(11)
-    drawn = dict.fromkeys(list(plain)[1:], b"drawn") | {"other": b"is none of this run"}
-    found = draw_plots(trajectory_columns(run), run.metrics, drawn)
-    assert list(found) == list(plain)
-    assert found["felt"] == plain["felt"]
-    assert {found[name] for name in list(plain)[1:]} == {b"drawn"}
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("control", ["scalar", "per-joint"])
 def test_every_figure_shows_its_curves(control: str) -> None:

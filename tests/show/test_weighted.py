@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from des_cli.results.reading import read_metrics
-from des_cli.show.plots.weighted import weighted_component
+from des_cli.show.weighted import weighted_component
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from des_cli.model.metrics import Change, Fidelity, Metrics, SolverFacts
-from des_cli.show.plots.standing import budget_words, change_words, status_words
+from des_cli.show.standing import budget_words, change_words, status_words
 
 
 @pytest.mark.parametrize(
