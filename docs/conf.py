@@ -45,6 +45,7 @@ CONTENTS = {
         "docs/howto/budget",
         "docs/howto/trade-off",
         "docs/howto/console",
+        "docs/python",
         "docs/howto/troubleshooting",
     ],
     "Reference": [
