@@ -4,7 +4,7 @@ The Python interface is two verbs::
 
     from des_cli import load_profile, reduce_profile
 
-    run = reduce_profile("cobra_felt", budget={"seat_g_rms_error_g": 0.02})
+    run = reduce_profile("cobra_felt")
     run.metrics["coriolis"]["vector"]["reduction"]
     run.commands, run.trajectory                # pandas
     run.plot("felt")

@@ -37,9 +37,8 @@ def reduce_profile(
     profile : Profile, str or path
         What `load_profile` returned, the name of a built-in profile, or a YAML or CSV file.
     budget : mapping of str to float, or float, optional
-        The most of each fidelity metric, in its unit, instead of the profile's budgets:
-        ``{"seat_g_rms_error_g": 0.02, "seat_rate_deviation_relative": 0.1}``. A number alone
-        is that of ``joint_deviation_relative``, the study's measure.
+        The most of each fidelity metric by its key, in its unit, instead of the profile's
+        budgets. A number alone is that of the joint deviation, the study's measure.
     settings : mapping of str to object, optional
         Values of other keys by their paths, as ``--set`` gives them:
         ``{"reduction.ends": "match-both"}``. Of a name or a file only.

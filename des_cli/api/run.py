@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from des_cli.errors import Complaint, DesError, UsageError
 from des_cli.model import run as model
+from des_cli.model.metric import SEAT_G_ERROR, SEAT_RATE_DEVIATION
 from des_cli.show.words import FIGURE
 
 if TYPE_CHECKING:
@@ -190,11 +191,11 @@ class Run:
             ("peak", _in_unit(FIGURE.from_to(turning.peak), "rad/s²")),
             (
                 "seat rate off by",
-                _words(FIGURE.percent, results.fidelity.value("seat_rate_deviation_relative")),
+                _words(FIGURE.percent, results.fidelity.value(SEAT_RATE_DEVIATION)),
             ),
             (
                 "G off by",
-                _words("{:.3g} g rms".format, results.fidelity.value("seat_g_rms_error_g")),
+                _words("{:.3g} g rms".format, results.fidelity.value(SEAT_G_ERROR)),
             ),
         ]
         return [(name, words) for name, words in found if words]

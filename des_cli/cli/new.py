@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from des_cli.batch.source import STANDARD_STREAM
+from des_cli.cli.command import OUTPUT, Command, option
 from des_cli.cli.common_options import verbosity_options
 from des_cli.cli.console import Console
 from des_cli.cli.stdout import write_data
@@ -18,6 +19,7 @@ DEFAULT_NAME = "maneuver"
 
 
 @click.command(
+    cls=Command,
     short_help="Write a commented profile to start from.",
     epilog="""\b
 Examples:
@@ -26,8 +28,12 @@ Examples:
 """,
 )
 @click.argument("name", required=False)
-@click.option(
-    "-o", "--out", metavar="FILE|-", help="Where it goes; never over a file.  [default: NAME.yaml]"
+@option(
+    OUTPUT,
+    "-o",
+    "--out",
+    metavar="FILE|-",
+    help="Where it goes; never over a file.  [default: NAME.yaml]",
 )
 @verbosity_options
 @click.pass_obj

@@ -86,7 +86,7 @@ class ExecutableSpline:
     trouble: str = ""
 
 
-def knot_grid(t: Floats, multiple: int = 1) -> SplineGrid:
+def knot_grid(t: Floats, multiple: int = 1, *, finer: int = 1) -> SplineGrid:
     """Return a grid of knots for a table's times: what the motion needs, not its rows.
 
     Parameters
@@ -95,10 +95,12 @@ def knot_grid(t: Floats, multiple: int = 1) -> SplineGrid:
         [s]
     multiple : int
         The number of intervals is a multiple of it, for coarser grids inside it.
+    finer : int
+        How many times as many knots as that there are.
     """
     duration = float(t[-1] - t[0])
     rows = len(t) - 1
-    step = min(max(duration / MANY_KNOTS, KNOT_STEP), LONGEST_KNOT_STEP)
+    step = min(max(duration / MANY_KNOTS, KNOT_STEP), LONGEST_KNOT_STEP) / finer
     needed = max(int(np.ceil(duration / step - 1e-9)), FEWEST_KNOTS)
     count = max(min(needed, rows), FEWEST_INTERVALS)
     count = multiple * max(1, -(-count // multiple))

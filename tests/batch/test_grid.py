@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from des_cli.batch.grid import Axis, grid_jobs, point_names, spelled
 from des_cli.batch.job import Job, Output
 from des_cli.batch.source import Source, load_source
-from des_cli.profiles_in.schema import _check_name
+from des_cli.profiles_in.schema import check_name
 
 SECONDS = Axis("time.step_s", (0.25, 0.5))
 WEIGHTS = Axis("reduction.r2", (1, 2.5))
@@ -81,7 +81,7 @@ def test_every_name_is_one_that_a_profile_may_have(own: str, values: list[object
     exact = [repr(value) for value in values]
     names = point_names(own, [f"key_{spelled(value)}" for value in values], exact)
     for name in names:
-        assert _check_name(name) == name
+        assert check_name(name) == name
     assert len(set(names)) == len(set(exact))
 
 

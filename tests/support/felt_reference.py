@@ -187,9 +187,6 @@ def evaluate(
     # acceleration is sampled once an interval: linear rates make it constant there
     middle = (rows[:-1] + rows[1:]) / 2
     acceleration = modified(middle)[2]
-    jerk = np.diff(acceleration, axis=0) / np.diff(middle)[:, None]
-    # positions leave an alternation open (see ``by_parabolas``): the mean of two rows has none
-    jerk = (jerk[:-1] + jerk[1:]) / 2
     ends = np.array([edges[0] + 1e-9, edges[-1] - 1e-9])
     at_ends = [one - other for one, other in zip(modified(ends), desired(ends), strict=True)]
     return Evaluation(
@@ -209,7 +206,7 @@ def evaluate(
         g_peak_after=np.abs(felt[1].g).max(axis=0),
         rate_peak=np.abs(after[1]).max(axis=0),
         acceleration_peak=np.abs(after[2]).max(axis=0),
-        jerk_peak=np.abs(jerk).max(axis=0),
+        jerk_peak=np.abs(np.diff(acceleration, axis=0) / np.diff(middle)[:, None]).max(axis=0),
         acceleration_sign_changes=tuple(sign_changes(each) for each in acceleration.T),
         start_angle=at_ends[0][0],
         start_rate=at_ends[1][0],

@@ -62,6 +62,9 @@ FEW = 250
 """Intervals from which an ill-posed problem is solved on a coarser grid first, and the most
 that this has."""
 
+FINER = 2
+"""Knots of an ill-posed problem beside those of another: its optimum is of fast motions."""
+
 DOWN = (16.0, 8.0, 4.0, 2.0, 1.0)
 """Multiples of the budgets that the second start of an ill-posed problem comes down by."""
 
@@ -213,11 +216,11 @@ class _Search:
 
     def _grids(self) -> list[SplineGrid]:
         """Return the grids to solve on, the last one that of the result."""
-        natural = knot_grid(self.t).intervals
-        if self.well_posed or natural <= FEW:
+        if self.well_posed:
             return [knot_grid(self.t)]
-        doublings = int(np.ceil(np.log2(natural / FEW)))
-        finest = knot_grid(self.t, 2**doublings)
+        natural = knot_grid(self.t, finer=FINER).intervals
+        doublings = max(0, int(np.ceil(np.log2(natural / FEW))))
+        finest = knot_grid(self.t, 2**doublings, finer=FINER)
         return [
             SplineGrid(finest.start, finest.step * each, finest.intervals // each)
             for each in (2**d for d in range(doublings, -1, -1))
