@@ -29,7 +29,7 @@ from des_cli.solver.spline import FEWEST_INTERVALS, ORDER, Ends, SplineGrid
 KNOT_STEP, LONGEST_KNOT_STEP = 0.04, 0.08
 """Time between knots [s], and in a long maneuver: a joint needs half a second from standstill to
 its full acceleration. Knots 10 ms apart change the reductions of the built-in maneuvers by less
-than 0.001 of a per cent of the cross-coupling, and from 80 ms by less than 0.004."""
+than 0.002 % of the cross-coupling, and from 80 ms by less than 0.004 %."""
 
 MANY_KNOTS = 1000
 """Knots from which they stand farther apart, as far as `LONGEST_KNOT_STEP`."""

@@ -9,7 +9,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import des_cli
 from des_cli import Run, load_profile, reduce_profile
 from des_cli.errors import FileAccessError, NotReleasedError, ProfileError, UsageError
 from des_cli.runs_out.stored_run import read_run
@@ -152,7 +151,3 @@ def test_nothing_is_written_that_is_not_released(path: Path, tmp_path: Path) -> 
         run.save(tmp_path / "run")
     assert not list(tmp_path.iterdir())
     assert "not released: " in run._repr_html_()
-
-
-def test_the_interface_imports_nothing_until_it_is_used() -> None:
-    assert {"Run", "load_profile", "reduce_profile"} <= set(des_cli.__all__)

@@ -212,18 +212,23 @@ def test_rows_come_one_by_one_through_a_pipe(
     assert b"sent 26 rows, late by " in words
 
 
+def holding(folder: Path, environment: dict[str, str]) -> subprocess.Popen[bytes]:
+    """A process that feeds a table and then its last row, until it is ended."""
+    (folder / "t.csv").write_bytes(csv_of(resting()))
+    return start(
+        *command("t.csv", "--at-end", "hold"),
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+
+
 @pytest.mark.parametrize(("name", "code"), [("SIGINT", 130), ("SIGTERM", 143)])
 def test_a_signal_ends_at_once(
     name: str, code: int, tmp_path: Path, python_environment: dict[str, str]
 ) -> None:
-    (tmp_path / "t.csv").write_bytes(csv_of(resting()))
-    with start(
-        *command("t.csv", "--at-end", "hold"),
-        cwd=tmp_path,
-        env=python_environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    ) as process:
+    with holding(tmp_path, python_environment) as process:
         assert process.stdout is not None
         for _ in range(3):
             process.stdout.readline()
@@ -239,14 +244,7 @@ def test_a_signal_ends_at_once(
 def test_a_reader_that_goes_away_ends_it(
     tmp_path: Path, python_environment: dict[str, str]
 ) -> None:
-    (tmp_path / "t.csv").write_bytes(csv_of(resting()))
-    with start(
-        *command("t.csv", "--at-end", "hold"),
-        cwd=tmp_path,
-        env=python_environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    ) as process:
+    with holding(tmp_path, python_environment) as process:
         assert process.stdout is not None
         assert process.stderr is not None
         process.stdout.readline()

@@ -128,7 +128,7 @@ class Chunk:
             return value.reshape(-1)
         windows, by_seat = self.unknowns.seat_windows, self._by_seat(bound, value.shape)
         self.total.keep(rows, windows, slope, by_seat, self.first)
-        if isinstance(bound, OnsetBound | NormBound):
+        if bound.per_interval:
             self._add_interval_squares(slope, by_seat, stiffness)
         else:
             root = np.sqrt(stiffness)

@@ -30,6 +30,10 @@ class LocalBound(Protocol):
     def rows(self) -> int:
         """Rows at each point, or on each interval."""
 
+    @property
+    def per_interval(self) -> bool:
+        """Whether a row belongs to both points of an interval, and not to one."""
+
     def value(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
         """Return the values, (rows, m or count), of points with joint angles (3, m)."""
 
@@ -54,6 +58,7 @@ class ComponentBound:
     direction: Floats
     bound: Floats
     scale: Floats
+    per_interval: bool = False
 
     @property
     def rows(self) -> int:
@@ -97,6 +102,7 @@ class NormBound:
     quantity: Quantity
     bound: float
     rows: int = len(GAUSS)
+    per_interval: bool = True
 
     def value(self, seat: SeatMotion, angles: Floats, at: slice) -> Floats:
         """Return the values, (2, count)."""
@@ -162,6 +168,7 @@ class AttitudeBound:
     reference: Floats
     bound: float
     rows: int = 1
+    per_interval: bool = False
 
     @property
     def _per_chord(self) -> float:
@@ -197,6 +204,7 @@ class OnsetBound:
     """
 
     direction: Floats
+    per_interval: bool = True
 
     @property
     def rows(self) -> int:

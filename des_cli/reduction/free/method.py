@@ -300,6 +300,7 @@ class _Search:
                 gap=ROUGH_GAP if rough else GAP,
                 tolerance=TOLERANCE,
                 start_gap=start_gap,
+                halfway=WARM_GAP,
                 max_iterations=min(most, self.log.left),
             )
             found = minimise(program, x, options, self.log)

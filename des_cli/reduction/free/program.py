@@ -22,7 +22,7 @@ from des_cli.reduction.free.chunk import Chunk
 from des_cli.reduction.free.expansion import MotionExpansion
 from des_cli.reduction.free.ground_cross import GROUND_VARIABLES, GroundCross, squares_of
 from des_cli.reduction.free.hessian import ConstantBand, PointBlocks, SeatWeight
-from des_cli.reduction.free.local_bounds import AttitudeBound, LocalBound, NormBound, OnsetBound
+from des_cli.reduction.free.local_bounds import AttitudeBound, LocalBound
 from des_cli.reduction.free.motion_problem import MotionProblem
 from des_cli.reduction.free.system import MotionSystem, factorise
 from des_cli.reduction.free.terms import JointBudget, Term, square
@@ -286,7 +286,7 @@ class MotionProgram:
 
 def _points_a_row(bound: LocalBound) -> int:
     """Return how often a bound's rows stand on one interval."""
-    return 1 if isinstance(bound, OnsetBound | NormBound) else POINTS
+    return 1 if bound.per_interval else POINTS
 
 
 def _joined(parts: list[list[Floats]]) -> Floats:

@@ -151,7 +151,7 @@ def test_a_joint_budget(spans: tuple[Span, ...], x: Floats, rng: np.random.Gener
 def test_a_bound(
     bound: LocalBound, spans: tuple[Span, ...], x: Floats, rng: np.random.Generator
 ) -> None:
-    each = bound.rows * (1 if isinstance(bound, OnsetBound | NormBound) else POINTS)
+    each = bound.rows * (1 if bound.per_interval else POINTS)
     multiplier, stiffness = rng.random((2, each * GRID.intervals))
 
     def angles_on(at: Floats, span: Span) -> Floats:

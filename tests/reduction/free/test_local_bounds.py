@@ -121,7 +121,7 @@ def test_slopes(bound, z):
 
     def value(y):
         # a row that belongs to two points: move one, keep the other
-        if isinstance(bound, OnsetBound | NormBound):
+        if bound.per_interval:
             half = M // 2
             first = np.concatenate([y[:, :half], z[:, half:]], axis=1)
             second = np.concatenate([z[:, :half], y[:, half:]], axis=1)
